@@ -141,17 +141,37 @@ describe('a look in a file', () => {
     assert.equal(material.getNormalTexture(), null);
   });
 
-  test('a part without a texture shows the colours in an overlay, and says so', async () => {
+  test('a part without a texture shows it by a copy of its surface and an overlay, and says so; they are replaced', async () => {
     const { json, bin } = unpackGlb(box);
     delete json.materials![0]!.pbrMetallicRoughness!.baseColorTexture;
-    const { bytes, left } = await paint(packGlb({ json, bin }), whole);
+    const bare = packGlb({ json, bin });
+    const { bytes, left } = await paint(bare, whole);
     assert.deepEqual(
       left.map(({ reason }) => reason),
       ['its material has no texture'],
     );
+    assert.deepEqual(await validate(bytes), []);
     const primitives = (await read(bytes)).getRoot().listMeshes()[0]!.listPrimitives();
-    assert.equal(primitives.length, 2);
-    assert.ok(primitives[1]!.getMaterial()!.getBaseColorTexture());
+    const count = (p: number) => primitives[p]!.getIndices()!.getCount();
+    const [before] = (await read(bare)).getRoot().listMeshes()[0]!.listPrimitives();
+    assert.equal(primitives.length, 3);
+    // A primitive has at least one triangle.
+    assert.deepEqual([count(0) + count(1), count(2)], [before!.getIndices()!.getCount(), 3]);
+    const [, surface, overlay] = primitives.map((primitive) => primitive.getMaterial()!);
+    const tinted = linear(128);
+    const mixed = [0, 1, 2].map((k) =>
+      srgb(0.5 * [0, 1, 0][k]! + 0.5 * ((128 / 255) * [1, 0, 0][k]! + (127 / 255) * tinted)),
+    );
+    near(texel(surface!.getBaseColorTexture()!.getImage(), [48, 48]), mixed);
+    assert.deepEqual(surface!.getBaseColorFactor(), [1, 1, 1, 1]);
+    assert.ok(overlay!.getBaseColorTexture());
+    for (const one of [surface!, overlay!]) {
+      assert.ok(one.getNormalTexture() && one.getMetallicRoughnessTexture() && one.getEmissiveTexture());
+      assert.deepEqual([one.getRoughnessFactor(), one.getMetallicFactor()], [1, 1]);
+    }
+    const { triangles, bytes: again } = await paint(bytes, lookOf([]));
+    assert.equal(triangles.total, before!.getIndices()!.getCount() / 3);
+    assert.equal(unpackGlb(again).json.images?.length ?? 0, unpackGlb(bare).json.images?.length ?? 0);
   });
 
   test('another size; another codec', async () => {

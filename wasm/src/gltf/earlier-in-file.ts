@@ -4,6 +4,7 @@ import { extensionsByType, type GlbWriter } from './glb-writer.js';
 import type { GltfFile } from './open-gltf.js';
 import { dropProperties } from './output/vrm-materials.js';
 import { isOfTransfer } from './overlay.js';
+import { eachTexture, numbersOf } from './references.js';
 
 /** Removes the UVs and zones of an earlier transfer from primitives. */
 export function removeAttributes({ json }: GlbWriter, primitives: readonly GLTF.IMeshPrimitive[]): void {
@@ -47,7 +48,7 @@ export function removeOverlays(writer: GlbWriter, file: GltfFile, meshes: Iterab
   const textures = dropLast(
     json,
     'textures',
-    materials.map(({ pbrMetallicRoughness: pbr }) => pbr?.baseColorTexture?.index),
+    [...numbersOf(eachTexture, { materials } as GLTF.IGLTF)],
     (number) =>
       hasReference(json.materials, /^index$/, number) || hasReference(json.extensions, /^(texture|_\w+)$/, number),
   );

@@ -17,6 +17,29 @@ export const isOfTransfer = (semantic: string, extras: object | undefined): bool
 /** Whether a paint hides all of a triangle. @param uvs  2 per vertex. */
 export type Hides = (uvs: ArrayLike<number>, a: number, b: number, c: number) => boolean;
 
+/** What textures and materials are added to. */
+export interface TextureWriter {
+  readonly json: GLTF.IGLTF;
+  /** @returns the number of the texture. */
+  addTexture(image: { bytes: Uint8Array; mimeType: string; name: string }): number;
+}
+
+/** A look on materials whose own textures cannot hold it. */
+export interface OverlaidLook {
+  /**
+   * Adds a copy of a material as the surface has it beneath the colours.
+   * @param texCoord  The number of the cage's UVs.
+   * @returns its number, and whether the surface shows the colours, too, or a relief.
+   */
+  addSurface(
+    writer: TextureWriter,
+    material: number | undefined,
+    texCoord: number,
+  ): { number: number; hasColors: boolean; hasRelief: boolean };
+  /** Gives the overlay on a material the same but the colours. */
+  lay(writer: TextureWriter, overlay: GLTF.IMaterial, material: number | undefined): void;
+}
+
 /** The texture to show: an image file's bytes, in the cage's UVs. */
 export interface Paint {
   name: string;
@@ -29,6 +52,8 @@ export interface Paint {
    * Default: all of the overlay is blended
    */
   hides?: Hides | undefined;
+  /** What else there is of a look: it lies on a copy of the surface, in whose place that comes. Default: colours alone */
+  look?: OverlaidLook | undefined;
 }
 
 /**

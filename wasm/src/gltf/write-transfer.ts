@@ -21,6 +21,7 @@ import {
   isOverlaid,
   isShown,
   metalnessOf,
+  type OverlaidLook,
   type Paint,
   uvsMark,
   zoneAttribute,
@@ -176,7 +177,17 @@ function addToGroup(
         --left;
         return true;
       });
-      const rest = triangles.filter((t) => !isTaken[t]);
+      let rest = triangles.filter((t) => !isTaken[t]);
+      if (overlay.paint.look && !dracoOf(primitive) && !primitive.extensions?.['KHR_materials_variants']) {
+        const some = rest.slice(0, Math.min(rest.length, left - 1));
+        for (const t of some) isTaken[t] = 1;
+        left -= some.length;
+        if (some.length > 0) {
+          const made = overlay.surface(primitive, cornersOf(indices, some), attributes[uvSet]!, base);
+          primitives.push(made.primitive);
+          if (made.hasColors) rest = rest.slice(some.length);
+        }
+      }
       for (const [some, inPlaceOf] of [[hidden, base], [rest]] as const)
         if (some.length > 0)
           primitives.push(overlay.primitive(primitive, cornersOf(indices, some), attributes[uvSet]!, inPlaceOf));
@@ -288,6 +299,8 @@ class OverlayWriter {
   readonly paint: Paint;
   #texture: number | undefined;
   readonly #materials = new Map<string, number>();
+  /** Copies of materials, by the numbers of these and the UVs. */
+  readonly #surfaces = new Map<string, ReturnType<OverlaidLook['addSurface']>>();
 
   constructor(writer: GlbWriter, paint: Paint) {
     this.#writer = writer;
@@ -320,6 +333,35 @@ class OverlayWriter {
     };
   }
 
+  /**
+   * Adds a primitive with triangles of `base` in its place: its surface, as a look has it beneath the colours.
+   * @returns it, and whether it shows the colours, too.
+   */
+  surface(
+    base: GLTF.IMeshPrimitive,
+    corners: Uint32Array,
+    uvs: number,
+    inPlaceOf: number,
+  ): { primitive: GLTF.IMeshPrimitive; hasColors: boolean } {
+    const { material, attributes } = base;
+    const set = freeUvSet((semantic) => attributes[semantic] !== undefined);
+    const key = JSON.stringify([material, set]);
+    const copy =
+      this.#surfaces.get(key) ??
+      this.paint.look!.addSurface(this.#writer, material, Number(set.slice('TEXCOORD_'.length)));
+    this.#surfaces.set(key, copy);
+    // Tangents are those of other UVs.
+    const { TANGENT: _, ...others } = attributes;
+    const primitive = {
+      ...structuredClone(base),
+      attributes: { ...(copy.hasRelief ? others : attributes), [set]: uvs },
+      indices: this.#writer.addIndices(corners, this.#writer.json.accessors![uvs]!.count),
+      material: copy.number,
+      extras: { ...overlayMark, cagecastInPlaceOf: inPlaceOf } satisfies InPlace,
+    };
+    return { primitive, hasColors: copy.hasColors };
+  }
+
   /** What a morph target of the base is to the overlay. One without anything in it is not allowed: it moves nothing then. */
   #morph(deltas: Record<string, number>, hasNormals: boolean, count: number): Record<string, number> {
     const own = Object.entries(deltas).filter(([semantic]) => isMorphed(semantic, hasNormals));
@@ -349,8 +391,13 @@ class OverlayWriter {
       alpha: isClear ? (baseColorFactor?.[3] ?? 1) : 1,
       unlit: source?.extensions?.[unlitExtension] !== undefined,
     };
-    const key = JSON.stringify([finish, maps, rough]);
-    const made = () => ({ ...this.#made(finish, rough), ...maps });
+    const { look } = this.paint;
+    const key = JSON.stringify([finish, maps, rough, look && base.material]);
+    const made = () => {
+      const material = { ...this.#made(finish, rough), ...maps };
+      look?.lay(this.#writer, material, base.material);
+      return material;
+    };
     const number = this.#materials.get(key) ?? addMaterial(json, made());
     this.#materials.set(key, number);
     return number;

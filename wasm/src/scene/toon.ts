@@ -19,6 +19,13 @@ export const toonProperties = ({ extensions }: GLTF.IGLTF, material: number): To
 /** The exponent of the colours of VRM 0, which are those of a display. */
 export const toonGamma = 2.2;
 
+/** Tints a toon material of VRM 0. */
+export function tintToon({ vectorProperties: colors = {} }: ToonProperties, tint: readonly number[]): void {
+  for (const [name, color] of Object.entries(colors))
+    if (/^_(Shade)?Color$/.test(name))
+      colors[name] = color.map((share, k) => share * (tint[k] ?? 1) ** (1 / toonGamma));
+}
+
 /** By what a toon material multiplies its texture in the shade. */
 export function shadeFactorOf(json: GLTF.IGLTF, number: number): number[] {
   const toon = json.materials![number]!.extensions?.[toonExtension] as { shadeColorFactor?: number[] } | undefined;

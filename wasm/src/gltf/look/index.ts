@@ -1,12 +1,14 @@
 import type { Part } from '../../scene/extract.js';
 import type { ImageCodec } from '../../scene/materials.js';
 import { FileModel } from '../bake/bake-file.js';
-import { type BakeInput, type BakeReport, bakeModel } from '../bake/plan.js';
+import { type BakeInput, type BakeReport, bakeModel, isPainted } from '../bake/plan.js';
 import type { GlbWriter } from '../glb-writer.js';
 import { hostDecode } from '../host-decode.js';
 import type { GltfFile } from '../open-gltf.js';
+import { type Paint, paintOf } from '../overlay.js';
 import { coatsOfLook } from './coats.js';
 import { composeLook, type Look } from './compose.js';
+import { overlaidLook, withoutFringes } from './overlaid.js';
 import { decodePng, encodePng } from './png.js';
 import { type Regions, readSavedLayers } from './saved-layers.js';
 
@@ -37,17 +39,23 @@ export const readLook = (saved: unknown, regions: Regions, decode: ImageCodec['d
 
 /**
  * Draws a look into the textures of a file's materials.
- * @returns what was done, and as a PNG the colours alone if some part cannot have them in a texture of its own.
+ * @returns what was done, and what an overlay shows if some part cannot have all in textures of its own.
  */
 export async function bakeLook(
   saved: unknown,
   { file, parts, writer, regions, ...input }: Drawn,
   { decode = hostDecode() ?? decodePng, encode = encodePng }: Codec,
-): Promise<{ report: BakeReport; baked: Set<Part>; overlay: Uint8Array | undefined }> {
+): Promise<{ report: BakeReport; baked: Set<Part>; overlay: Paint | undefined }> {
   const look = await readLook(saved, regions, decode);
   const codec = { decode, encode };
   const model = new FileModel(file, parts, writer);
-  const done = await bakeModel(model, { ...input, coats: coatsOfLook(look), codec });
-  const hasOverlay = look.color !== undefined && done.report.left.length > 0;
-  return { ...done, overlay: hasOverlay ? await encodePng(look.color!) : undefined };
+  const coats = coatsOfLook(look);
+  const done = await bakeModel(model, { ...input, coats, codec });
+  const rest = parts.filter((part) => !done.baked.has(part) && isPainted(part, input.result));
+  if (rest.length === 0 || Object.keys(coats).length === 0) return { ...done, overlay: undefined };
+  const bytes = await encodePng(
+    look.color ? withoutFringes(look.color) : { width: 1, height: 1, data: new Uint8Array(4) },
+  );
+  const overlaid = await overlaidLook(look, model, rest, encodePng);
+  return { ...done, overlay: { ...paintOf(bytes, 'look'), look: overlaid } };
 }

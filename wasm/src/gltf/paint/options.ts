@@ -24,8 +24,8 @@ export interface PaintOptions
   texture?: Uint8Array | ((template: Choice['template'], cage: Cage) => Uint8Array | Promise<Uint8Array>) | undefined;
   /**
    * Instead of a texture: what `save` of layers of `cagecast/three` returned. All that three.js shows of them is drawn into the textures of
-   * the model's own materials: colours, base tint, roughness, metalness, glow and relief. Parts whose textures cannot hold it show the
-   * colours in an overlay.
+   * the model's own materials: colours, base tint, roughness, metalness, glow and relief. Parts whose textures cannot hold it show it in
+   * the cage's UVs, by a copy of their material and an overlay.
    */
   look?: SavedLayers | undefined;
   /** The longer side of textures that show a look, in texels, 1 to 8192. Default: as before; 1024 for those that a material lacks. */
@@ -96,7 +96,7 @@ export interface PaintedGlb {
   note: string | undefined;
   /** Names of the parts that stay bare because of their names: glasses, hats, and what the cage was made without. */
   bare: string[];
-  /** With a look: the parts that it is not seen on, and why. */
+  /** With a look: the parts whose own textures cannot hold it, and why. */
   left: BakeReport['left'];
   /** With a look: the materials whose textures are moved while they are shown, and by what; the paint moves, too. */
   moving: BakeReport['moving'];

@@ -106,7 +106,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     const form = isDecodedBy(decoders, target) ? 'none' : 'keep';
     const write = async (model: ReadModel, parts: readonly PreparedPart[], shown: Paint) =>
       writeTransfer(model.file, model.extracted, parts, {
-        paints: [{ ...shown, hides: await opacityOf(shown, decode ?? hostDecode()) }],
+        paints: [{ ...shown, hides: shown.look ? undefined : await opacityOf(shown, decode ?? hostDecode()) }],
         form,
         hasAttributes: attributes,
       });

@@ -5,7 +5,7 @@ import type { BakeReport } from '../bake/plan.js';
 import { removeOverlays } from '../earlier-in-file.js';
 import { type Form, GlbWriter } from '../glb-writer.js';
 import type { Regions, SavedLayers } from '../look/saved-layers.js';
-import { type Paint, paintOf } from '../overlay.js';
+import type { Paint } from '../overlay.js';
 import type { ReadModel } from '../read-model.js';
 import type { PaintOptions } from './options.js';
 
@@ -52,7 +52,6 @@ export async function withLook(
   const rest = prepared.map((one, p) =>
     baked.has(parts[p]!) ? { ...one, cosmeticTriangles: new Uint8Array(one.cosmeticTriangles.length) } : one,
   );
-  const isDone = rest.every(({ cosmeticTriangles }) => !cosmeticTriangles.includes(1));
-  if (isDone || !overlay) return { data, left, moving };
-  return { data: (await write(await read(data), rest, paintOf(overlay, 'look'))).data, left, moving };
+  if (!overlay) return { data, left, moving };
+  return { data: (await write(await read(data), rest, overlay)).data, left, moving };
 }
