@@ -29,12 +29,12 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync',
-    31_400,
+    32_200,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, for WebGPURenderer',
-    32_700,
+    33_500,
     "import 'cagecast/three/webgpu'; import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
@@ -52,10 +52,10 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   ['layers', 17_900, "import { createLayers } from 'cagecast/three'; console.log(createLayers);"],
   ['<cagecast-viewer>', 67_000, "import 'cagecast/viewer';"],
-  ['useCagecast', 75_500, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
+  ['useCagecast', 76_300, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
   ['inspect', 33_000, "import { inspect } from 'cagecast'; console.log(inspect);"],
   ['bakeTexture', 6500, "import { bakeTexture } from 'cagecast/engines'; console.log(bakeTexture);"],
-  ['cagecast of cagecast/gltf', 132_000, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
+  ['cagecast of cagecast/gltf', 132_900, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
   ['paintGlb', 70_000, "import { paintGlb } from 'cagecast/gltf'; console.log(paintGlb);"],
   ['makeCage', 3250, "import { makeCage } from 'cagecast/cages'; console.log(makeCage);"],
 ];

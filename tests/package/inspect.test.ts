@@ -7,7 +7,7 @@ import { ball, head, join3d, within } from './scenes.js';
 
 before(init);
 
-type Whole = { [K in keyof Omit<Mesh, 'poses' | 'names'>]-?: NonNullable<Mesh[K]> };
+type Whole = { [K in keyof Omit<Mesh, 'poses' | 'names' | 'otherUvSets'>]-?: NonNullable<Mesh[K]> };
 const { cage, target: unnamed } = head(1, 16) as { cage: Whole; target: Whole };
 const target = { ...unnamed, names: ['skin', 'eye', 'tongue'] };
 const look = (changed: Partial<Mesh>, on: Mesh = target): Inspection => inspect({ ...cage, ...changed }, on);

@@ -12,7 +12,7 @@ export interface Scene {
 }
 
 /** A mesh with UVs and groups. */
-type Whole = Mesh & Required<Omit<Mesh, 'poses' | 'names'>>;
+type Whole = Mesh & Required<Omit<Mesh, 'poses' | 'names' | 'otherUvSets'>>;
 
 /** Numbers in 0 … 1 that a seed repeats (mulberry32). */
 export function random(seed: number): () => number {

@@ -355,7 +355,7 @@ test('wrong options are one error of both calls, which names the function, the o
     await assert.rejects(call({ textur: new Texture() } as ApplyOptions), {
       code: 'badOption',
       message:
-        /^(applyTransfer|applyTransferAsync): options\.textur is not an option; \1 takes: cage, texture, .*threshold/,
+        /^(applyTransfer|applyTransferAsync): options\.textur is not an option; \1 takes: cage, cageUvs, texture, .*threshold/,
     });
   for (const [fn, call] of Object.entries(calls))
     for (const [options, reason] of fn === 'applyTransfer' ? ofBoth : [...ofBoth, ...ofAsync]) {

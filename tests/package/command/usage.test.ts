@@ -58,7 +58,7 @@ const wrong: [line: string, message: RegExp][] = [
   [`${transfer} --set weldTolerance=1`, /"weldTolerance" is 1, not a number within 0\.\.0\.01/],
   [
     `${transfer} --set tint=1`,
-    /There are preset, seams, weldTolerance, occlusionReach, pokeThrough, motion, minCovered, uvBounds, referenceCage\./,
+    /There are preset, seams, weldTolerance, occlusionReach, pokeThrough, motion, minCovered, cageUvs, uvBounds, referenceCage\./,
   ],
   [`${transfer} --set occlusionReach=-1`, /not a number within 0\.\.Infinity/],
   [`${transfer} --set minCovered=2`, /not a number within 0\.\.1/],

@@ -9,7 +9,16 @@ import { begin, sceneOf } from './harness';
 const kPlace = ['cageElsewhere', 'cageMisplaced', 'cageTooSmall', 'targetPokesOut', 'cageTooFar'];
 const kSurface = ['degenerateTriangles', 'doubledTriangles', 'nonManifoldEdges', 'cracks', 'uvsOverlap', 'uvsInPieces'];
 const kOthers = ['cageBackward', 'nothingToPaint', 'faceBare', 'eyesUnknown', 'windowsUnknown', 'eyesPainted'];
-const kMore = ['faceSeam', 'skinBare', 'limbsBare', 'holeUnexplained', 'muchCulled', 'muchHidden', 'piecesApart'];
+const kMore = [
+  'faceSeam',
+  'skinBare',
+  'limbsBare',
+  'holeUnexplained',
+  'muchCulled',
+  'muchHidden',
+  'piecesApart',
+  'uvsUnknown',
+];
 
 const finding = (code: string, more: Partial<Finding> = {}): Finding =>
   ({ code, weight: 0.5, sentence: '', advice: '', numbers: {}, ...more }) as Finding;

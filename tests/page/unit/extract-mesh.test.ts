@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BufferAttribute, Mesh, MeshStandardMaterial, PlaneGeometry, Texture } from 'three';
-import { extractMesh } from '../../../web/src/loading/extract-mesh';
+import { extractMesh, meshesOf } from '../../../web/src/loading/extract-mesh';
+import { arraysOf } from '../../../web/src/state/arrays';
 import { Pose, type Shape } from '../../../web/src/tools/live/pose';
 
 test('UVs are of the channel of the base colour texture, the first ones without a texture', () => {
@@ -15,6 +16,21 @@ test('UVs are of the channel of the base colour texture, the first ones without 
   assert.deepEqual(uvs(), geometry.getAttribute('uv').array);
   material.map.channel = 1;
   assert.deepEqual(uvs(), second);
+});
+
+test('as a cage, a model with several sets of UVs keeps in mind that nothing tells which is meant', () => {
+  const geometry = new PlaneGeometry();
+  const plane = new Mesh(geometry, new MeshStandardMaterial());
+  const { mesh, cageMesh } = meshesOf(plane);
+  assert.equal(mesh, cageMesh);
+  geometry.setAttribute('uv1', new BufferAttribute(Float32Array.of(0, 0, 0.5, 0, 0, 0.5, 0.5, 0.5), 2));
+  const several = meshesOf(plane);
+  assert.deepEqual([several.mesh.otherUvSets, several.cageMesh.otherUvSets], [undefined, [1]]);
+  assert.deepEqual(arraysOf({ mesh: several.cageMesh } as never, several as never).cage.otherUvSets, [1]);
+  plane.material.map = new Texture();
+  plane.material.map.channel = 1;
+  const told = meshesOf(plane);
+  assert.equal(told.mesh, told.cageMesh);
 });
 
 test('UVs are where the transform of the base colour texture puts them, as in the command', () => {

@@ -22,6 +22,11 @@ export interface Mesh {
    * one of them is painted as well, with the option `motion`. Default: none.
    */
   poses?: Float32Array | undefined;
+  /**
+   * Of a cage that was read from a file: the numbers of other UV sets in it that the texture may be drawn in as well as in `uvs`, as nothing
+   * tells. `inspect` asks which it is. Default: none.
+   */
+  otherUvSets?: readonly number[] | undefined;
 }
 
 const noFloats = new Float32Array(0);

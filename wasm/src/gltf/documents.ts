@@ -27,6 +27,11 @@ export interface CagecastOptions extends Omit<TransferOptions, 'parts'>, MaskSou
    * Default: the meshes of the document that are named as the outer cages of others, as `Head_OuterCage` of `Head_Geo`.
    */
   cage?: Document | Mesh | undefined;
+  /**
+   * The number of the cage's UV set that the texture was drawn in, from 0. Default: that of the cage's own base colour texture, else the
+   * first.
+   */
+  cageUvs?: number | undefined;
   /** The bytes of a PNG or JPEG file in the cage's UV space, shown as an overlay on the cosmetic triangles. Default: no overlay. */
   texture?: Uint8Array | undefined;
   /**

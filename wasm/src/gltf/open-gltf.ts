@@ -3,6 +3,7 @@ import { CagecastError } from '../core/error.js';
 import type { AccessorData } from '../scene/accessor.js';
 import { firstLine, InputError } from '../scene/input-error.js';
 import type { ImageBytes, SceneSource } from '../scene/source.js';
+import type { UvSetChoice } from '../scene/uv-sets.js';
 import { decodeAccessors } from './accessors.js';
 import { checkGeometry } from './checks/check-geometry.js';
 import { checkRest } from './checks/check-rest.js';
@@ -37,6 +38,8 @@ export interface Opening {
   readBeside?(name: string, uri: string): Promise<Uint8Array>;
   /** Default: meshopt's; what Draco compresses is refused. */
   decoders?: Decoders | undefined;
+  /** As of `SceneSource`. */
+  cageUvs?: UvSetChoice | undefined;
 }
 
 /**
@@ -48,7 +51,7 @@ export interface Opening {
 export async function openGltf(
   path: string,
   content: Uint8Array,
-  { limits = defaultLimits, readBeside = refuseBeside, decoders }: Opening = {},
+  { limits = defaultLimits, readBeside = refuseBeside, decoders, cageUvs }: Opening = {},
 ): Promise<GltfFile> {
   try {
     checkBytes(content.byteLength, limits);
@@ -63,7 +66,7 @@ export async function openGltf(
     checkLimits(withDracoCounts(json, buffers), all, limits);
     const accessors = await decodeAccessors(json, buffers, decoders);
     const imageOf = (texture: number) => readImage({ json, buffers, readUri }, texture);
-    return { path, json, buffers, accessors, readUri, imageOf };
+    return { path, json, buffers, accessors, readUri, imageOf, cageUvs };
   } catch (error) {
     if (error instanceof InputError) throw error.in(path);
     if (error instanceof CagecastError) throw error; // of this host, not of the file

@@ -52,6 +52,7 @@ export type FindingCode =
   | 'uvsWithoutArea'
   | 'uvsOverlap'
   | 'uvsInPieces'
+  | 'uvsUnknown'
   // The result.
   | 'nothingToPaint'
   | 'faceBare'

@@ -204,7 +204,7 @@ function fill(x: ArrayLike<number>, y: ArrayLike<number>, grid: RepeatingGrid): 
   }
 }
 
-/** UVs outside the texture, without area, overlapping, or in too many charts. */
+/** UVs outside the texture, without area, overlapping, in too many charts, or of a set that may be the wrong one. */
 export function checkUvs(
   { surface, cage }: Scene,
   { outside, withoutArea, overlap, charts, seams }: UvLayout,
@@ -237,6 +237,16 @@ export function checkUvs(
       sentence: `${percent(overlap.share)} of the used area of the texture belongs to more than one triangle of the cage, at most to ${overlap.layers}`,
       advice: 'This is fine if both sides should look alike (a mirrored layout); otherwise unwrap without overlaps.',
       numbers: { share: overlap.share, layers: overlap.layers },
+    });
+  }
+  const others = cage.otherUvSets ?? [];
+  if (others.length > 0) {
+    findings.push({
+      code: 'uvsUnknown',
+      weight: 0.5,
+      sentence: `Nothing tells in which UV set of the cage the texture was drawn; besides the one that was taken, with other UVs: ${others.join(', ')}`,
+      advice: 'Choose the set by its number, or leave no other in the file of the cage.',
+      numbers: { others: [...others] },
     });
   }
   const perChart = surface.areas.length / charts;

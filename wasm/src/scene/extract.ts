@@ -36,6 +36,7 @@ import {
 } from './pieces.js';
 import { aboveIn, parentsOf, roots, type SceneSource, worldMatrices } from './source.js';
 import { type UvLayout, uvLayoutOf } from './uv-layout.js';
+import { chooseUvSet, rankOf, type UvSet, uvSetNames } from './uv-sets.js';
 
 /** A primitive, by the numbers of its mesh and itself in the file's JSON. */
 interface PrimitiveRef {
@@ -50,7 +51,7 @@ export interface Part extends Piece, PrimitiveRef {
 
 /** The triangles of a glTF's scene as arrays, and the parts that they come from. */
 export interface Extracted extends Pick<Chosen<Part>, 'accessories' | 'kept' | 'excluded'> {
-  /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
+  /** With one group per part; with UVs if every primitive has the set of its base colour texture; without one, the first, or of a cage the one that `chooseUvSet` finds. */
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
@@ -89,10 +90,10 @@ export function extract(
     const leftOut = others.map(({ name, why }) => ({ name, why }));
     const near = moveTo(parts, origin);
     const mesh = joinPieces(parts);
-    const uvs = readUvs(source, parts, mesh.positions.length / 3);
+    const uvs = readUvs(source, parts, mesh.positions.length / 3, whichCount === 'cage');
     const poses = whichCount === 'cage' ? undefined : posesOf(morphedParts(source, parts, mesh.positions));
     return {
-      mesh: { ...mesh, ...(uvs && { uvs }), ...(poses && { poses }) },
+      mesh: { ...mesh, ...uvs, ...(poses && { poses }) },
       parts,
       leftOut,
       ...numbers,
@@ -333,22 +334,54 @@ function readOwnTriangles(source: SceneSource, ref: PrimitiveRef, vertexCount: n
 }
 
 /** The UVs of all parts, if all have some. */
-function readUvs(source: SceneSource, parts: readonly Part[], vertexCount: number): Float32Array | undefined {
+function readUvs(
+  source: SceneSource,
+  parts: readonly Part[],
+  vertexCount: number,
+  isCage: boolean,
+): Pick<Mesh, 'uvs' | 'otherUvSets'> | undefined {
   const laid = parts.map((part) => {
-    const layout = uvLayout(source.json, part);
-    return { part, layout, accessor: accessorOf(source, part, layout.set) };
+    const { layout, others } = isCage ? cageLayout(source, part) : { layout: uvLayout(source.json, part), others: [] };
+    return { part, layout, others, accessor: accessorOf(source, part, layout.set) };
   });
   if (parts.length === 0 || laid.some(({ accessor }) => accessor === undefined)) return undefined;
   const uvs = new Float32Array(2 * vertexCount);
-  for (const { part, layout, accessor } of laid) {
-    const place = source.isUnnumbered ? `"${part.name}"` : primitivePath(part);
-    uvs.set(decodeUvs(place, layout, accessor!, part.vertexCount), 2 * part.firstVertex);
-  }
-  return uvs;
+  for (const { part, layout, accessor } of laid)
+    uvs.set(decodeUvs(placeOf(source, part), layout, accessor!, part.vertexCount), 2 * part.firstVertex);
+  const otherUvSets = [...new Set(laid.flatMap(({ others }) => others))].sort((a, b) => a - b);
+  return { uvs, ...(otherUvSets.length > 0 && { otherUvSets }) };
+}
+
+const placeOf = ({ isUnnumbered }: SceneSource, part: Part): string =>
+  isUnnumbered ? `"${part.name}"` : primitivePath(part);
+
+/** How the texture that is drawn for a cage is laid on a part of it, and the numbers of the sets that might be meant as well. */
+function cageLayout(source: SceneSource, part: Part): { layout: UvLayout; others: number[] } {
+  const texture = baseColorTexture(source.json, part);
+  const layout = uvLayoutOf(texture);
+  const numberOf = (semantic: string) => Number(/^TEXCOORD_(\d+)$/.exec(semantic)?.[1]);
+  const names = source.json.meshes![part.mesh]!.extras?.[uvSetNames] as (string | undefined)[] | undefined;
+  const sets = Object.keys(primitiveOf(source, part).attributes)
+    .filter((semantic) => numberOf(semantic) >= 0)
+    .map((semantic): UvSet => {
+      const number = numberOf(semantic);
+      const name = Array.isArray(names) ? names[number] : undefined;
+      const values = () => decodeFloats(accessorOf(source, part, semantic)!);
+      return { number, name, rank: rankOf(name ?? ''), values };
+    })
+    .sort((a, b) => a.number - b.number);
+  if (sets.length === 0) return { layout, others: [] };
+  const told = { given: source.cageUvs, used: texture && numberOf(layout.set) };
+  const fail = (text: string) => new InputError(`${placeOf(source, part)} ${text}`);
+  const { number, others } = chooseUvSet(sets, told, fail);
+  const set = `TEXCOORD_${number}`;
+  return { layout: set === layout.set ? layout : { set, transform: undefined }, others };
 }
 
 /** How the base colour texture of a part is laid on it. */
-export function uvLayout({ meshes, materials = [] }: GLTF.IGLTF, { mesh, primitive }: Part): UvLayout {
+export const uvLayout = (json: GLTF.IGLTF, part: Part): UvLayout => uvLayoutOf(baseColorTexture(json, part));
+
+function baseColorTexture({ meshes, materials = [] }: GLTF.IGLTF, { mesh, primitive }: Part) {
   const material = materials[meshes![mesh]!.primitives[primitive]!.material ?? -1];
-  return uvLayoutOf(material?.pbrMetallicRoughness?.baseColorTexture);
+  return material?.pbrMetallicRoughness?.baseColorTexture;
 }

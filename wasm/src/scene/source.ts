@@ -2,6 +2,7 @@ import type { GLTF } from '@gltf-transform/core';
 import { identity, type Matrix, multiply } from '../parts/affine.js';
 import type { AccessorData } from './accessor.js';
 import { localMatrix } from './matrix.js';
+import type { UvSetChoice } from './uv-sets.js';
 
 /** A glTF as all that reads scenes sees it: a file, or a document as the file that it would be. */
 export interface SceneSource {
@@ -13,6 +14,8 @@ export interface SceneSource {
   readonly accessors: readonly AccessorData[];
   /** Whether people know its elements by names alone, so that messages have no numbers. Default: no. */
   readonly isUnnumbered?: true;
+  /** The UV set that counts where it is a cage, if it was chosen. Default: `chooseUvSet` finds it. */
+  readonly cageUvs?: UvSetChoice | undefined;
   /** The file of the image of a texture; `undefined` if it has none. */
   imageOf(texture: number): Promise<ImageBytes | undefined>;
 }

@@ -1,6 +1,7 @@
 import type { Mesh, Object3D } from 'three';
 import { extract } from '#three';
 import type { ExtractedMesh, Model, Primitive } from '../state/model';
+import { haveSameUvs } from '../state/same-uvs';
 
 /**
  * Reads all triangle meshes below `root`, depth first, into one set of arrays, as `extract` of `cagecast/three`: those that are drawn,
@@ -43,7 +44,7 @@ export function meshesOf(
   let fault: unknown;
   try {
     mesh = extractMesh(root, nameOf);
-    if (mesh.leftOut.length === 0) return { mesh, cageMesh: mesh };
+    if (mesh.leftOut.length === 0) return { mesh, cageMesh: withCageUvs(mesh, root, nameOf) };
   } catch (error) {
     fault = error;
   }
@@ -54,6 +55,13 @@ export function meshesOf(
   } catch (error) {
     throw fault ?? error;
   }
+}
+
+/** A mesh as a cage: itself, unless it has several sets of UVs, and the one for a texture is another or not known. */
+function withCageUvs(mesh: ExtractedMesh, root: Object3D, nameOf?: (mesh: Mesh) => string | undefined): ExtractedMesh {
+  if (!mesh.primitives.some(({ mesh: { geometry } }) => geometry.hasAttribute('uv1'))) return mesh;
+  const cageMesh = extractMesh(root, nameOf, 'cage');
+  return cageMesh.otherUvSets || !haveSameUvs({ mesh }, { mesh: cageMesh }) ? cageMesh : mesh;
 }
 
 /** Swaps the last two corners of every triangle. */

@@ -7,7 +7,7 @@ export function arraysOf(cage: Model, target: Model): { cage: Mesh; target: Mesh
   const apart = moveApart(rangesOf(cage.mesh), rangesOf(target.mesh));
   const [outer, inner] = [apart?.cage ?? cage.mesh, apart?.target ?? target.mesh];
   return {
-    cage: { positions: outer.positions, indices: outer.indices, uvs: outer.uvs },
+    cage: { positions: outer.positions, indices: outer.indices, uvs: outer.uvs, otherUvSets: outer.otherUvSets },
     target: {
       positions: inner.positions,
       indices: inner.indices,

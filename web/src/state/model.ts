@@ -24,6 +24,8 @@ export interface ExtractedMesh {
   indices: Uint32Array;
   /** 2 per vertex: where it is in its base colour texture; without one, the first set. Absent unless every primitive has UVs. */
   uvs?: Float32Array | undefined;
+  /** Of a cage, as `otherUvSets` of a `Mesh`. */
+  otherUvSets?: readonly number[] | undefined;
   /** 1 per vertex: the index of its primitive. Only vertices of the same primitive are welded. */
   groups: Uint32Array;
   primitives: Primitive[];

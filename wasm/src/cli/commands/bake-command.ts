@@ -27,7 +27,7 @@ import { isByTemplate, type Sources, texturePath } from '../model/sources.js';
 import { configLine, quoted, takenAway } from '../model/text.js';
 import { allFilesReadBy } from '../transfer/files-read.js';
 import { inspectionReport } from '../transfer/inspection.js';
-import { cageReport, choiceLines, missingLine } from '../transfer/report-parts.js';
+import { cageReport, choiceLines, missingLine, uvSetsLine } from '../transfer/report-parts.js';
 import { cutTarget, type Run, runTransfer } from '../transfer/run-transfer.js';
 import { listNames, paintForModel, paintOfModel } from './bake-picture.js';
 import * as common from './common-flags.js';
@@ -134,7 +134,7 @@ export function addBakeCommand(program: Command, io: Io): void {
     return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
       const settings = resolveSettings(await common.layersFor(flags)(target));
       const reading = common.readingOf(flags);
-      return bakeCommand({ ...flags, target, ...around, paint, ...settings, reading }, io);
+      return bakeCommand({ ...flags, target, ...around, cageUvs: flags.set?.cageUvs, paint, ...settings, reading }, io);
     });
   });
 }
@@ -184,7 +184,8 @@ async function bakeCommand(command: BakeCommand, io: Io): Promise<Found> {
   refuseOverwriting([...allFilesReadBy(command, run), paint, normal, orm, command.look], [command.output]);
   const fitted = command.template === undefined ? undefined : fittedOf(command, run, io);
   writeFiles([{ path: command.output, data }], io);
-  return { lines: [...(fitted?.lines ?? []), ...lines], report: { ...report, ...fitted?.report } };
+  const told = uvSetsLine(run.cage.extracted.mesh);
+  return { lines: [...(fitted?.lines ?? []), ...lines, told], report: { ...report, ...fitted?.report } };
 }
 
 /** What is laid over textures: images, or a look. @throws {InputError} that names the file of the look. */

@@ -27,12 +27,12 @@ interface BatchFlags extends common.SettingFlags, common.AroundFlags, common.Rea
 const kHelp = `
 A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["*eye*"]}
-Its members: target, cage, template, referenceCage, uvBounds, texture, regions, output, report, and any setting of
+Its members: target, cage, template, cageUvs, referenceCage, uvBounds, texture, regions, output, report, and any setting of
 cagecast.config.json.
 A line that is printed: target, output, report, key (of the job: its settings, and size and time of what it reads), status (done,
 failed or skipped), ms, counts, triangles; if there are, also error, verdict, findings (codes), note (why next to nothing may be
-painted), isTurned (the cage was turned by half) and template (what --template came to, or made). Then a summary goes to the
-standard error; with --quiet, only errors go there.
+painted), isTurned (the cage was turned by half), otherUvSets (of the cage: any may be meant) and template (what --template came to,
+or made). Then a summary goes to the standard error; with --quiet, only errors go there.
 The cages of a batch are left out of the files that a pattern names. Missing folders are made.
 A job that fails does not stop the others. Files are complete or not there, even if the batch is killed.
 With --resume, a skipped job adds no line to --results, unless the last line about its target is of a failure or another batch.
@@ -94,12 +94,12 @@ export function addBatchCommand(program: Command, io: Io): void {
 async function runBatch(targets: string[], flags: BatchFlags, io: Io): Promise<void> {
   const { manifest, results, resume = false, atLeast, workers, quiet, json } = flags;
   const { cage, template, texture, region: regions, output, report } = flags;
-  const { uvBounds, referenceCage } = flags.set ?? {};
+  const { cageUvs, uvBounds, referenceCage } = flags.set ?? {};
   const fault = faultOf(targets, flags);
   if (fault !== undefined) throw new UsageError(fault);
   if (quiet) io.silence();
   const defaults = {
-    ...{ cage, template, uvBounds, referenceCage, texture, regions, output, report, results },
+    ...{ cage, template, cageUvs, uvBounds, referenceCage, texture, regions, output, report, results },
     inspects: atLeast === undefined ? undefined : true,
     layersFor: common.layersFor(flags),
     reading: common.readingOf(flags),

@@ -2,6 +2,7 @@ import { createHash } from 'node:crypto';
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { basename, dirname, extname } from 'node:path';
 import { firstLine, InputError, naming } from '../../scene/input-error.js';
+import { isUvSetChoice, uvSetText } from '../../scene/uv-sets.js';
 import { filesBeside } from '../io/beside.js';
 import { readBytes, standard } from '../io/files.js';
 import { filesOf } from '../io/glob.js';
@@ -121,12 +122,14 @@ const kPaths = ['target', 'cage', 'template', 'referenceCage', 'texture', 'outpu
 /** The job of a line of a manifest: its settings win over flags. @throws {InputError} that names the member. */
 async function jobOfLine(line: string, folder: string, defaults: JobDefaults): Promise<Job> {
   const given = parseObject(line);
-  refuseUnknown(given, [...kPaths, 'regions', 'uvBounds', ...kSettingNames]);
+  refuseUnknown(given, [...kPaths, 'regions', 'cageUvs', 'uvBounds', ...kSettingNames]);
   const names = kPaths.map((name) => [name, pathIn(given, name, folder)] as const);
   const own = Object.fromEntries(names.filter(([, path]) => path !== undefined));
   const { target } = own;
   if (target === undefined) throw new InputError('has no "target"');
-  const { uvBounds = defaults.uvBounds, regions } = given;
+  const { cageUvs = defaults.cageUvs, uvBounds = defaults.uvBounds, regions } = given;
+  if (cageUvs !== undefined && !isUvSetChoice(cageUvs))
+    throw new InputError(`"cageUvs" is ${shown(cageUvs)}, not ${uvSetText}`);
   if (uvBounds !== undefined && !areBounds(uvBounds))
     throw new InputError(`"uvBounds" is ${shown(uvBounds)}, not an array of ${boundsText}`);
   const around = (own['cage'] ?? own['template']) ? { cage: undefined, template: undefined } : {};
@@ -136,6 +139,7 @@ async function jobOfLine(line: string, folder: string, defaults: JobDefaults): P
       ...around,
       ...own,
       target,
+      cageUvs,
       uvBounds,
       ...(regions !== undefined && { regions: regionsOf(regions, folder) }),
     },

@@ -17,6 +17,7 @@ export type Outcome =
       triangles: Report['triangles'];
       note?: string;
       isTurned?: boolean;
+      otherUvSets?: readonly number[];
       template?: string;
       verdict?: Verdict;
       findings?: string[];
@@ -39,6 +40,7 @@ export function serveBatch(): void {
       const told = {
         ...(note && { note }),
         ...(cage.isTurned && { isTurned: true }),
+        ...(cage.otherUvSets && { otherUvSets: cage.otherUvSets }),
         ...(cage.template && { template: cage.template }),
       };
       answer({ status: 'done', counts, triangles, ...told, ...inspected });

@@ -4,6 +4,7 @@ import { templateNames } from '../../cages/template-names.js';
 import { optionValues } from '../../generated/options.js';
 import { defaultLimits, type ReadLimits } from '../../gltf/checks/read-limits.js';
 import { type FormatLimits, formatDefaults } from '../../gltf/formats/limits.js';
+import type { UvSetChoice } from '../../scene/uv-sets.js';
 import { standard } from '../io/files.js';
 import { UsageError } from '../model/failures.js';
 import type { ReadOptions } from '../model/reading.js';
@@ -30,6 +31,7 @@ export interface SettingFlags extends Pick<Settings, 'threshold' | 'keep' | 'exc
 
 /** Options of `--set` that say which part of a cage counts. */
 interface CageSettings {
+  cageUvs?: UvSetChoice;
   uvBounds?: UvBounds;
   referenceCage?: string;
 }
@@ -108,11 +110,17 @@ const kCageFileFlags = [
 
 /** Options of `--set` about the cage alone. */
 const kCageSettings =
-  "uvBounds=U0,V0,U1,V1 (the part of the cage's UVs that the texture covers; nothing is painted outside; default: all, and the texture covers 0..1), referenceCage=CAGE (another version of the cage; where its UVs have no triangle, --cage counts as having a hole)";
+  "cageUvs=SET (the UV set of the cage that the texture was drawn in, by its number, from 0, or its name; default: that of its own texture, else as its name tells, else the first), uvBounds=U0,V0,U1,V1 (the part of the cage's UVs that the texture covers; nothing is painted outside; default: all, and the texture covers 0..1), referenceCage=CAGE (another version of the cage; where its UVs have no triangle, --cage counts as having a hole)";
 
 const kThreshold = optionValues.find(({ name }) => name === 'threshold')!;
 const kOthers = optionValues.filter((option) => option !== kThreshold);
-const kSetNames: readonly string[] = ['preset', ...kOthers.map(({ name }) => name), 'uvBounds', 'referenceCage'];
+const kSetNames: readonly string[] = [
+  'preset',
+  ...kOthers.map(({ name }) => name),
+  'cageUvs',
+  'uvBounds',
+  'referenceCage',
+];
 
 /** Flags that were called otherwise. */
 const kRenamed: Record<string, string> = {
@@ -333,6 +341,7 @@ function optionOf(text: string, before: Settings & CageSettings = {}): Settings 
   const [, name = text, value = ''] = /^(.*?)=(.*)$/s.exec(text) ?? [];
   if (name === kThreshold.name) throw new InvalidArgumentError(`It has a flag of its own: --threshold ${value}`);
   if (!kSetNames.includes(name)) throw new InvalidArgumentError(`There are ${kSetNames.join(', ')}.`);
+  if (name === 'cageUvs' && value !== '') return { ...before, cageUvs: /^\d+$/.test(value) ? Number(value) : value };
   if (name === 'uvBounds') return { ...before, uvBounds: boundsOf(value) };
   if (name === 'referenceCage' && value !== '') return { ...before, referenceCage: value };
   const word = { true: true, false: false, Infinity: 'Infinity' }[value];

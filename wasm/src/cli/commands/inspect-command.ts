@@ -45,11 +45,12 @@ Example: cagecast inspect head.glb --cage cage.glb --report report.html`,
 
 /** Checks whether a cage fits a target. @throws {InputError} that names the file at fault. */
 async function inspectTarget(target: string, flags: InspectFlags, io: Io): Promise<Found> {
-  const { uvBounds, referenceCage } = flags.set ?? {};
+  const { cageUvs, uvBounds, referenceCage } = flags.set ?? {};
   const { rules } = resolveSettings(await common.layersFor(flags)(target));
   const sources = {
     target,
     ...common.aroundOf(flags, target),
+    cageUvs,
     uvBounds,
     referenceCage,
     rules,

@@ -15,6 +15,7 @@ import { configLine, integer } from '../model/text.js';
 import { allFilesReadBy } from '../transfer/files-read.js';
 import { inFile } from '../transfer/models.js';
 import { readTarget } from '../transfer/read-target.js';
+import { uvSetsLine } from '../transfer/report-parts.js';
 import { runTransfer } from '../transfer/run-transfer.js';
 import * as common from './common-flags.js';
 import { type Found, perform } from './perform.js';
@@ -79,7 +80,7 @@ export function addRelayCommand(program: Command, io: Io): void {
     return perform(io, flags, { inputs, outputs: [flags.output] }, async () => {
       const { rules } = resolveSettings(await common.layersFor(flags)(target));
       const reading = common.readingOf(flags);
-      return relayCommand({ ...flags, target, ...around, paint, rules, reading }, io);
+      return relayCommand({ ...flags, target, ...around, cageUvs: flags.set?.cageUvs, paint, rules, reading }, io);
     });
   });
 }
@@ -90,7 +91,12 @@ async function relayCommand(command: RelayCommand, io: Io): Promise<Found> {
   const image = await readImage(paint, reading);
   const model = await readTarget(target, reading, io, rules);
   const from = await runTransfer(command, io, undefined, model);
-  const to = await runTransfer({ ...command, cage: other, template: undefined }, io, undefined, model);
+  const to = await runTransfer(
+    { ...command, cage: other, template: undefined, cageUvs: undefined },
+    io,
+    undefined,
+    model,
+  );
   io.step('carrying the paint over');
   const [width, height] = scaledTo(image, size);
   const { mesh } = model.extracted;
@@ -112,6 +118,8 @@ async function relayCommand(command: RelayCommand, io: Io): Promise<Found> {
       `wrote ${output}: ${width} × ${height}; of the ${integer(painted)} triangles that ${other} paints, ${cage} paints ${integer(shared)}`,
       overlap.lost > kMuchLost &&
         `${percent(overlap.lost)} of the paint found its place in the UVs of ${other} taken, by what is nearer to it`,
+      uvSetsLine(from.cage.extracted.mesh),
+      uvSetsLine(to.cage.extracted.mesh, `leave no other in ${other}`),
       configLine(rules.config),
     ],
     report: { output, width, height, triangles: { painted, shared }, overlap, config: rules.config ?? null },

@@ -41,8 +41,8 @@ OUT: what an earlier transfer added is replaced. Where triangles need different 
 (not with --set seams=vertex); --borders cut adds some, too; Draco changes their order. --region adds UVs and zones of its own
 (_NCZ_1, …). An overlay fills what a material cuts out by its alpha (MASK), as between hairs; cagecast bake does not. Triangles
 that the texture hides are drawn by the overlay alone: it is opaque there, so that hair before it stays before it.
-uvBounds and referenceCage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is painted
-whole; zones do not depend on them.
+cageUvs, uvBounds and referenceCage are about --cage alone. Within the bounds, the UVs in OUT are 0..1. A triangle across them is
+painted whole; zones do not depend on them.
 <UDIM> stands for the tiles of the cage's UVs: 1001, 1002 to its right, 1011 above. A triangle shows the tile of its UVs' centre.
 Of several scenes, the default one is read; of the instances of a mesh (EXT_mesh_gpu_instancing), the first.
 A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
@@ -72,13 +72,13 @@ export function addTransferCommand(program: Command, io: Io): void {
   common.addFlags(command, ...common.transferGroups);
   command.addHelpText('after', kHelp).action((target: string, flags: TransferFlags) => {
     const { texture, output, report, region: regions } = flags;
-    const { uvBounds, referenceCage } = flags.set ?? {};
+    const { cageUvs, uvBounds, referenceCage } = flags.set ?? {};
     const around = common.aroundOf(flags, target);
     const fault = common.outputFault(flags) ?? boundsFault(texture, uvBounds);
     if (fault !== undefined) throw new UsageError(fault);
     return perform(io, flags, { inputs: [target, ...common.inputsOf(flags)], outputs: [output, report] }, async () => {
       const settings = resolveSettings(await common.layersFor(flags)(target));
-      const files = { target, ...around, uvBounds, referenceCage, texture, regions, output, report };
+      const files = { target, ...around, cageUvs, uvBounds, referenceCage, texture, regions, output, report };
       return transferToFile({ ...files, ...settings, reading: common.readingOf(flags) }, io);
     });
   });

@@ -27,6 +27,7 @@ export async function readGltf(
     limits: reading.limits,
     readBeside: (name, uri) => readUri(name, uri, dirname(path), reading),
     decoders: { draco: createDracoDecoder },
+    cageUvs: reading.cageUvs,
   });
   return missing.length > 0 ? { ...file, missing } : file;
 }

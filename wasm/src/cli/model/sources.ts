@@ -1,4 +1,5 @@
 import { InputError } from '../../scene/input-error.js';
+import type { UvSetChoice } from '../../scene/uv-sets.js';
 import type { ReadOptions } from './reading.js';
 import type { ResolvedSettings, Rules } from './settings.js';
 import type { UvBounds } from './uv-bounds.js';
@@ -11,6 +12,8 @@ export interface Sources {
   template?: string | undefined;
   /** Whether the cage has to be named as such, as none was given but the target. */
   isOwnCage?: boolean | undefined;
+  /** The UV set of the cage, by its number or name. Default: as `chooseUvSet` finds it. */
+  cageUvs?: UvSetChoice | undefined;
   /** The part of the cage's UVs that the texture covers; by default 0..1. */
   uvBounds?: UvBounds | undefined;
   /** A cage with the UVs of all triangles that count; others count as cut away. */

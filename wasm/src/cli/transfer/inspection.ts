@@ -89,8 +89,10 @@ export function conclusionOf({ verdict, findings }: Inspection): string[] {
 }
 
 /** What to do about a finding, with the flags that reverse its verdicts, if there are any. */
-export function adviceOn({ advice, places = [], locks, ignore = [], numbers: { weldTolerance } }: Finding): string {
+export function adviceOn({ code, advice, places = [], locks, ignore = [], numbers }: Finding): string {
+  const { weldTolerance, others } = numbers;
   if (weldTolerance !== undefined) return `${advice} By: --set weldTolerance=${weldTolerance}`;
+  if (code === 'uvsUnknown') return `${advice} By: --set cageUvs=${[others].flat()[0]}`;
   if (ignore.length > 0) return `${advice} By: ${ignore.map((name) => `--ignore "${name}"`).join(' ')}`;
   const locked = places.filter(({ segment }) => locks?.[segment] !== undefined);
   const flags = new Set(locked.map(({ segment, part }) => `--${locks![segment]} "${part}"`));

@@ -4,6 +4,7 @@ import { errorInFile, type ReadModel } from '../../gltf/read-model.js';
 import { hasCages } from '../../parts/own-cages.js';
 import { extract, type WhichCount } from '../../scene/extract.js';
 import { InputError } from '../../scene/input-error.js';
+import type { UvSetChoice } from '../../scene/uv-sets.js';
 import type { Io } from '../io/io.js';
 import { readGltf } from '../io/read-gltf.js';
 import type { ReadOptions } from '../model/reading.js';
@@ -50,7 +51,8 @@ export function cachedReading(): typeof readModel {
 }
 
 /** The cage that a target has with it. @throws {InputError} that names the file, if it has none. */
-export function cageIn({ file }: ReadModel): ReadModel {
+export function cageIn({ file: target }: ReadModel, cageUvs: UvSetChoice | undefined): ReadModel {
+  const file = { ...target, cageUvs };
   const extracted = extract(file, 'own', 'cage');
   if (hasCages(extracted.parts)) return { file, extracted };
   throw new InputError(

@@ -44,6 +44,7 @@ export const cageReport = (file: string, { extracted: { mesh } }: ReadModel, { i
   vertices: mesh.positions.length / 3,
   triangles: mesh.indices.length / 3,
   ...(isTurned && { isTurned }),
+  ...(mesh.otherUvSets && { otherUvSets: mesh.otherUvSets }),
 });
 
 export type CageReport = ReturnType<typeof cageReport>;
@@ -90,6 +91,14 @@ export const zoneTable = (counts: PerZone, areas: PerZone, total = 1): string[] 
 export const turnedLine = ({ isTurned }: { isTurned?: boolean }): Line =>
   isTurned && 'the cage faced the other way; turned by half about the vertical axis, it fits clearly better, so it was';
 
+/** Says that nothing tells which UV set of a cage is meant, if so. */
+export const uvSetsLine = (
+  { otherUvSets = [] }: { otherUvSets?: readonly number[] | undefined },
+  advice = `--set cageUvs=${otherUvSets[0]} takes it`,
+): Line =>
+  otherUvSets.length > 0 &&
+  `nothing tells in which UV set of the cage the texture was drawn; with other UVs than the one that was taken: ${otherUvSets.join(', ')}; ${advice}`;
+
 /** How many names a line has at most. */
 const kMaxNames = 12;
 
@@ -107,9 +116,10 @@ export const leftOutLines = ({ missing, leftOut, bare }: TargetReport): Line[] =
 /** All options that a transfer was made with; needs `init`. */
 export function effectiveOptions({
   rules: { preset, single, names, ignored, masks, config },
+  cageUvs,
   uvBounds,
   referenceCage,
-}: Pick<Sources, 'rules' | 'uvBounds' | 'referenceCage'>) {
+}: Pick<Sources, 'rules' | 'cageUvs' | 'uvBounds' | 'referenceCage'>) {
   const all = { ...presetOptions(preset), ...single };
   // JSON leaves out what is undefined, and has no infinite numbers.
   const infinite = Object.entries(all).flatMap(([name, value]) => (value === Infinity ? [[name, 'Infinity']] : []));
@@ -125,6 +135,7 @@ export function effectiveOptions({
     exclude: patterns('exclude'),
     ignore: ignored.map(({ pattern }) => pattern),
     masks: (never ?? always ?? colors) ? { never: never?.path, always: always?.path, colors } : undefined,
+    cageUvs,
     uvBounds,
     referenceCage,
     config: config ?? null, // the configuration file that some of them come from

@@ -74,6 +74,8 @@ export interface Report {
     triangles: { total: number; cosmetic: number };
     /** Whether the cage faced the other way, and was turned by half. */
     isTurned?: boolean;
+    /** As `otherUvSets` of a `Mesh`. */
+    otherUvSets?: readonly number[];
   }[];
   /** Why next to nothing may be painted, if so, and what helps. */
   note?: string;
@@ -171,6 +173,7 @@ export function regionReport(
   { cage, texture, output }: Region & Pick<TransferCommand, 'output'>,
   { run, painted, paintedBefore, written, zones }: RegionRun,
 ): Report['regions'][number] {
+  const { otherUvSets } = run.cage.extracted.mesh;
   const sets = [...new Set(output === undefined ? [] : written?.added.map(({ uvSet }) => uvSet))];
   return {
     cage,
@@ -180,5 +183,6 @@ export function regionReport(
     counts: perZone(run.result.zones),
     triangles: { total: painted.length, cosmetic: countOf(painted) - paintedBefore },
     ...(run.isTurned && { isTurned: true }),
+    ...(otherUvSets && { otherUvSets }),
   };
 }

@@ -14,6 +14,7 @@ import { isBackward } from '../../inspect/backward.js';
 import { boxOf } from '../../inspect/geometry.js';
 import { naming } from '../../scene/input-error.js';
 import { Materials } from '../../scene/materials.js';
+import type { UvSetChoice } from '../../scene/uv-sets.js';
 import { readImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import type { ReadOptions } from '../model/reading.js';
@@ -52,19 +53,24 @@ export interface Run {
  * @throws {InputError} that names the file at fault.
  */
 export async function runTransfer(
-  { target: path, cage, template, isOwnCage, uvBounds, referenceCage, rules, reading }: Sources,
+  { target: path, cage, template, isOwnCage, cageUvs, uvBounds, referenceCage, rules, reading }: Sources,
   io: Io,
   readCage: typeof readModel = readModel,
   read?: ReadModel,
 ): Promise<Run> {
   const target = read ?? (await readTarget(path, reading, io, rules));
   const masks = await readMasks(target, rules.masks, reading);
-  const cageOf = async (file: string) =>
-    besideOf(target, withUvs(isOwnCage && file === cage ? cageIn(target) : await readCage(file, reading, io)));
+  const cageOf = async (file: string, uvs?: UvSetChoice) =>
+    besideOf(
+      target,
+      withUvs(
+        isOwnCage && file === cage ? cageIn(target, uvs) : await readCage(file, { ...reading, cageUvs: uvs }, io),
+      ),
+    );
   const { parts } = transferOptions(rules, target, []);
   const made = template === undefined ? undefined : await cageByTemplate(target, template, { parts, reading }, io);
   const own = made?.cage ?? (cage === kAutoCage ? await makeCageFor(target, { parts }, io) : undefined);
-  const whole = own ? await readBack(own, template ?? kAutoCage, target) : await cageOf(cage);
+  const whole = own ? await readBack(own, template ?? kAutoCage, target) : await cageOf(cage, cageUvs);
   const bare = bareParts(target, whole);
   const options = { ...transferOptions(rules, target, bare), ...(masks && { masks }) };
   const reference = referenceCage === undefined ? undefined : await cageOf(referenceCage);

@@ -11,7 +11,7 @@ import { inspectionReport } from './inspection.js';
 import type { readModel } from './models.js';
 import { compressionOf, transferRegion } from './region.js';
 import { makeReport, type Report, regionReport } from './report.js';
-import { choiceLines, leftOutLines, turnedLine, zoneTable } from './report-parts.js';
+import { choiceLines, leftOutLines, turnedLine, uvSetsLine, zoneTable } from './report-parts.js';
 
 /**
  * Runs the transfer and writes the requested files.
@@ -41,6 +41,7 @@ export async function transferToFile(
       cage,
       template: undefined,
       isOwnCage: false,
+      cageUvs: undefined,
       uvBounds: undefined,
       referenceCage: undefined,
     };
@@ -84,6 +85,7 @@ function summary(command: TransferCommand, report: Report): Line[] {
     ...choiceLines(cage),
     verdict && `the cage is ${verdict}`,
     turnedLine(cage),
+    uvSetsLine(cage),
     note,
     outOfBounds > 0 &&
       `${integer(outOfBounds)} more could be painted, but lie outside of uvBounds; zones do not depend on the bounds`,
@@ -91,6 +93,7 @@ function summary(command: TransferCommand, report: Report): Line[] {
     ...regions.flatMap((one) => [
       `${one.cage}: ${shareOf(one.triangles)} triangles more may be painted, by ${one.texture}`,
       turnedLine(one),
+      uvSetsLine(one, 'leave no other in its file'),
     ]),
     command.report !== undefined && `wrote ${command.report}`,
     ...leftOutLines(target),

@@ -18,6 +18,8 @@ export interface BakeOptions extends Omit<TransferOptions, 'parts'>, MaskSources
    * Default: the meshes of the document that are named as the outer cages of others, as `Head_OuterCage` of `Head_Geo`.
    */
   cage?: Document | Mesh | undefined;
+  /** The number of its UV set that the paints were drawn in, as for `cagecast`. */
+  cageUvs?: number | undefined;
   /** Images in the cage's UVs; at least one. */
   paints: Paints;
   /** Reads and writes the model's images, as this package does not: by sharp, say, or a canvas. Images are written as PNG. */

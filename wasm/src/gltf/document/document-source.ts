@@ -16,6 +16,7 @@ import type { Part } from '../../scene/extract.js';
 import { instancing } from '../../scene/instancing.js';
 import type { Piece } from '../../scene/pieces.js';
 import type { ImageBytes, SceneSource } from '../../scene/source.js';
+import type { UvSetChoice } from '../../scene/uv-sets.js';
 
 /** A piece, and its place in a document. */
 export interface DocumentPart extends Piece {
@@ -77,8 +78,15 @@ export class DocumentSource implements SceneSource {
   /** A texture may be used with several wrap modes, each of which is a texture of the file. */
   readonly #textures: { texture: Texture; wrapS: number; wrapT: number }[] = [];
 
-  /** @param extensions  Those of the file, which documents do not keep. */
-  constructor(document: Document, extensions?: VrmExtensions) {
+  /**
+   * @param extensions  Those of the file, which documents do not keep.
+   * @param cageUvs     As of `SceneSource`.
+   */
+  constructor(
+    document: Document,
+    extensions?: VrmExtensions,
+    readonly cageUvs?: UvSetChoice,
+  ) {
     const root = document.getRoot();
     const [accessors, nodes, scenes] = [root.listAccessors(), root.listNodes(), root.listScenes()];
     const [materials, meshes, skins] = [root.listMaterials(), root.listMeshes(), root.listSkins()];

@@ -16,6 +16,7 @@ import { hasCages, moveApart } from '../../parts/own-cages.js';
 import { extrasIn, partsWithout } from '../../scene/cage-model.js';
 import { type Extracted, extract } from '../../scene/extract.js';
 import { InputError } from '../../scene/input-error.js';
+import { isUvSetNumber, uvSetNumberText } from '../../scene/uv-sets.js';
 import { type MaskSources, masksOf } from '../bake/mask-sources.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { DocumentModel } from './document-model.js';
@@ -24,6 +25,7 @@ import { DocumentSource } from './document-source.js';
 /** Options of a transfer from a cage to a document. */
 interface DocumentTransferOptions extends Omit<TransferOptions, 'parts'>, MaskSources {
   cage?: Document | Mesh | undefined;
+  cageUvs?: number | undefined;
   texture?: Uint8Array | undefined;
   parts?: Parts | undefined;
 }
@@ -51,11 +53,12 @@ export async function transferDocument(
   given: DocumentTransferOptions,
   cuts: boolean,
 ): Promise<DocumentTransfer> {
-  const { cage, texture, parts, maskImages, maskColors, ...options } = given;
+  const { cage, cageUvs, texture, parts, maskImages, maskColors, ...options } = given;
   if (cage !== undefined && (typeof cage !== 'object' || cage === null))
     throw wrong(caller, 'cage', cage, 'a document or a mesh');
   const image = texture && plainArray(texture, 'Uint8Array');
   if (texture !== undefined && !image) throw wrong(caller, 'texture', texture, 'a Uint8Array');
+  if (cageUvs !== undefined && !isUvSetNumber(cageUvs)) throw wrong(caller, 'cageUvs', cageUvs, uvSetNumberText);
   const fault = faultOfParts(caller, parts);
   if (fault !== undefined) throw new CagecastError('badOption', caller, fault);
   if (Object.keys(maskImages ?? {}).some((name) => name !== 'never' && name !== 'always'))
@@ -65,7 +68,7 @@ export async function transferDocument(
   const target = read(caller, 'target', document, () => extractDocument(document, 'own', parts));
   const { origin } = target;
   const around = isDocument(cage ?? document)
-    ? within(caller, 'cage', () => extractDocument((cage ?? document) as Document, origin, 'cage'))
+    ? within(caller, 'cage', () => extractDocument((cage ?? document) as Document, origin, 'cage', cageUvs))
     : { mesh: moved(cage as Mesh, origin), parts: [], source: undefined };
   if (cage === undefined && !hasCages(around.parts)) throw wrong(caller, 'cage', cage, kNoCage);
   const apart = within(caller, 'target', () => moveApart(around, target, (text) => new InputError(text)));
@@ -92,8 +95,9 @@ function extractDocument(
   document: Document,
   origin: Origin,
   whichCount: Parts | 'cage' | undefined,
+  cageUvs?: number,
 ): ExtractedDocument {
-  const source = new DocumentSource(document);
+  const source = new DocumentSource(document, undefined, cageUvs);
   return { ...extract(source, origin, whichCount), source };
 }
 

@@ -9,6 +9,7 @@ import { plainArray } from '../../core/typed-arrays.js';
 import { type Finding, kVerdicts, type Verdict } from '../../inspect/finding.js';
 import { type Borders, isCut } from '../../parts/cut-part.js';
 import type { ImageCodec } from '../../scene/materials.js';
+import { isUvSetNumber, uvSetNumberText } from '../../scene/uv-sets.js';
 import type { BakeReport } from '../bake/plan.js';
 import type { MeshoptDecoder } from '../decoders.js';
 import type { SavedLayers } from '../look/saved-layers.js';
@@ -32,6 +33,11 @@ export interface PaintOptions
   size?: number | undefined;
   /** The cage in its place around the model, with UVs: the bytes of a GLB, or a mesh, such as a `Cage`, in the space of the model's scene. */
   cage?: Uint8Array | Mesh | undefined;
+  /**
+   * The number of the cage's UV set that the texture was drawn in, from 0. Default: that of the cage's own base colour texture, else the
+   * first; where another set differs and nothing tells, the finding `uvsUnknown` says so.
+   */
+  cageUvs?: number | undefined;
   /**
    * A cage that is fitted to the model first: the name of a template of the package, whose file is loaded, the bytes of a GLB, or a
    * `Template`. `auto`: what `chooseCage` of `cagecast/cages` chooses.
@@ -70,6 +76,7 @@ const kOptions = [
   ...[
     'texture',
     'cage',
+    'cageUvs',
     'template',
     'atLeast',
     'landmarks',
@@ -117,7 +124,7 @@ export function checkOptions(given: PaintOptions): void {
   const fault = faultOfNames('paintGlb', 'options', given, kOptions) ?? faultOfParts('paintGlb', given.parts);
   if (fault !== undefined) throw new CagecastError('badOption', 'paintGlb', fault);
   const { texture, look, cage, template, size, ...options } = given;
-  const { atLeast = 'unfit', attributes = false, decoders, borders } = options;
+  const { atLeast = 'unfit', attributes = false, cageUvs, decoders, borders } = options;
   if (typeof attributes !== 'boolean') throw wrong('options.attributes', attributes, 'true or false', 'badOption');
   if (!kVerdicts.includes(atLeast))
     throw wrong('options.atLeast', atLeast, `one of ${kVerdicts.join(', ')}`, 'badOption');
@@ -130,6 +137,8 @@ export function checkOptions(given: PaintOptions): void {
     throw wrong('options.size', size, `a whole number of texels from 1 to ${mostTexels}`, 'badOption');
   if (decoders !== undefined && (typeof decoders !== 'object' || decoders === null))
     throw wrong('options.decoders', decoders, 'an object', 'badOption');
+  if (cageUvs !== undefined && !isUvSetNumber(cageUvs))
+    throw wrong('options.cageUvs', cageUvs, uvSetNumberText, 'badOption');
   isCut('paintGlb', borders);
 }
 

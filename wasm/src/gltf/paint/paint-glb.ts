@@ -58,6 +58,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     size,
     encode,
     cage,
+    cageUvs,
     template,
     atLeast = 'unfit',
     landmarks,
@@ -80,7 +81,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     const fitted =
       template &&
       (await fitTo(target, template, { inspect: computing.inspect, landmarks, decode, signal, onProgress }));
-    const around = await readCage(fitted?.cage ?? cage!, target, decoders);
+    const around = await readCage(fitted?.cage ?? cage!, target, { decoders, cageUvs });
     const paint = given ?? (paintFor && readPaint(await paintFor(fitted!.template!, fitted!.cage)));
     signal?.throwIfAborted();
     onProgress(0.9, 'transferring');
@@ -174,10 +175,16 @@ async function judge(
 async function readModel(
   name: string,
   bytes: Uint8Array,
-  { beside, parts, decoders }: { beside?: ReadModel; parts?: Parts | undefined } & Pick<PaintOptions, 'decoders'> = {},
+  {
+    beside,
+    parts,
+    decoders,
+    cageUvs,
+  }: { beside?: ReadModel; parts?: Parts | undefined } & Pick<PaintOptions, 'decoders' | 'cageUvs'> = {},
 ): Promise<ReadModel> {
   const { meshopt, draco } = decoders ?? {};
   const file = await openGltf(name, bytes, {
+    cageUvs,
     decoders: {
       meshopt: () => (meshopt ? started(meshopt) : meshoptDecoder().catch(adviseDecoder)),
       ...(draco && { draco: async () => draco }),
@@ -201,10 +208,10 @@ const isDecodedBy = (decoders: PaintOptions['decoders'], { file: { json } }: Rea
 async function readCage(
   cage: Uint8Array | Mesh,
   target: ReadModel,
-  decoders: PaintOptions['decoders'],
+  reading: Pick<PaintOptions, 'decoders' | 'cageUvs'>,
 ): Promise<ReadModel> {
   const file = plainArray(cage, 'Uint8Array');
-  if (file) return withUvs(await readModel('cage', file, { beside: target, decoders }));
+  if (file) return withUvs(await readModel('cage', file, { beside: target, ...reading }));
   if (typeof cage !== 'object' || cage === null || cage instanceof Uint8Array) {
     const advice = isTemplateName(cage) ? '; the template of this name is fitted by options.template' : '';
     throw wrong('cage', cage, `the bytes of a GLB, or a mesh${advice}`);

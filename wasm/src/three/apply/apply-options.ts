@@ -4,6 +4,7 @@ import { optionNames } from '../../api/option-names.js';
 import type { Parts } from '../../api/parts.js';
 import type { Borders } from '../../parts/cut-part.js';
 import type { Prepared } from '../../parts/prepare.js';
+import { isUvSetNumber, uvSetNumberText } from '../../scene/uv-sets.js';
 import { checkNames, checkParts, notA, wrong } from '../errors.js';
 import type { Extracted, Part } from './extract-scene.js';
 import { isModel, type LoadedCage } from './models.js';
@@ -24,6 +25,11 @@ export interface ApplyOptions extends Omit<TransferOptions, 'parts'> {
    * `Head_OuterCage` of `Head_Geo`. Not needed with `saved`.
    */
   cage?: LoadedCage | undefined;
+  /**
+   * The number of the cage's UV set that the texture was drawn in: 0 is the attribute `uv`, 1 `uv1`. Default: that of the cage's own base
+   * colour texture, else the first; where another set differs and nothing tells, `inspect` has the finding `uvsUnknown`.
+   */
+  cageUvs?: number | undefined;
   /**
    * A result of `transfer`, also from `cagecast/worker`, for the arrays that `extract` returned for cage and target. No transfer is
    * made, so the options of `transfer` count only where `borders` are cut, which needs the cage.
@@ -129,6 +135,7 @@ export interface Applied {
 /** The options that `transfer` does not have. */
 const kOwnOptions = [
   'cage',
+  'cageUvs',
   'texture',
   'opacity',
   'feather',
@@ -153,7 +160,7 @@ export function checkOptions(fn: string, options: ApplyOptions & Calling): void 
   const check = (name: keyof typeof options, fits: unknown, what: string): void => {
     if (!fits) throw notA(what, `options.${name}`, options[name], fn, 'badOption');
   };
-  const { texture, material, channel = 1, saved, parts, signal, onProgress } = options;
+  const { texture, material, channel = 1, cageUvs, saved, parts, signal, onProgress } = options;
   check('texture', !texture || texture.isTexture, 'a Texture');
   check('material', !material || material.isMaterial, 'a Material');
   check('channel', [1, 2, 3].includes(channel), '1, 2 or 3');
@@ -161,6 +168,7 @@ export function checkOptions(fn: string, options: ApplyOptions & Calling): void 
     const share = options[name] ?? 1;
     check(name, share >= 0 && share <= 1, 'a number from 0 to 1');
   }
+  check('cageUvs', cageUvs === undefined || isUvSetNumber(cageUvs), uvSetNumberText);
   check('saved', !saved || typeof saved.key === 'string', 'what prepareTransfer or deserialize returned');
   checkParts(fn, parts);
   check('signal', signal == null || signal.throwIfAborted, 'an AbortSignal');

@@ -132,12 +132,12 @@ interface Call {
 
 function read(fn: string, target: Loaded, options: ApplyOptions): Call {
   const cuts = isCut(fn, options.borders);
-  const { cage, saved, result, parts } = options;
+  const { cage, cageUvs, saved, result, parts } = options;
   const call = ++calls;
   const extracted = extractNear(target, 'target', 'own', { parts, channel: options.channel });
   const own = transferOptions(options);
   const needsCage = !saved && (cuts || !result);
-  const outer = needsCage ? extractNear(cage ?? ownCage(fn, target), 'cage', extracted.origin) : undefined;
+  const outer = needsCage ? extractNear(cage ?? ownCage(fn, target), 'cage', extracted.origin, { cageUvs }) : undefined;
   const bare = outer ? bareGroups(outer, extracted) : extracted.accessories;
   const rules = { ...own, parts: { keep: extracted.kept, exclude: [...bare, ...extracted.excluded] } };
   const apart = outer && moveApart(outer, extracted);

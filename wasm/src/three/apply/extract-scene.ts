@@ -33,7 +33,7 @@ import { isGeometry, isInstanced, isMesh, isObject, isOfInstances } from './flag
 import { isCage, isLoadedGltf, type LoadedCage, type LoadedGltf, objectOf } from './models.js';
 import { groupNames, materialsOf, namesOf } from './names.js';
 import { placesOf } from './places.js';
-import { inTexture, uvAttribute, uvLayoutOf } from './uv-layout.js';
+import { cageLayoutOf, inTexture, type UvLayout, uvAttribute, uvLayoutOf } from './uv-layout.js';
 import { asBefore, type Channel, stateOf } from './writes.js';
 
 /** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
@@ -55,7 +55,7 @@ export interface Part {
 
 /** All triangles of a scene as arrays, and the parts that they come from. */
 export interface Extracted {
-  /** With UVs if every part has those of its base colour texture, where they are in it, or the attribute `uv` without one. */
+  /** With UVs if every part has those of its base colour texture, where they are in it; without one, the attribute `uv`, or of a cage the set that `chooseUvSet` finds. */
   mesh: Mesh & { indices: Uint32Array; groups: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
@@ -92,6 +92,8 @@ interface ExtractOptions {
   parts?: Parts | undefined;
   /** That a transfer will write. */
   channel?: Channel | undefined;
+  /** The UV set of a cage, if it was chosen. */
+  cageUvs?: number | undefined;
 }
 
 /** What a transfer needs of a target. */
@@ -106,10 +108,10 @@ export function extractNear(
   model: LoadedCage,
   argument: string,
   origin: Origin,
-  { parts, channel }: ExtractOptions = {},
+  { parts, channel, cageUvs }: ExtractOptions = {},
 ): ExtractedNear {
   const object = objectOf(model, argument);
-  return asItWas(object, channel, () => extractNow(model, argument, origin, parts));
+  return asItWas(object, channel, () => extractNow(model, argument, origin, { parts, cageUvs }));
 }
 
 /** Calls a function while an object is as before its transfers: before all, or those that one into a channel replaces. */
@@ -120,7 +122,12 @@ export function asItWas<T>(object: Object3D | BufferGeometry, channel: Channel |
   return asBefore(geometries, channel, call);
 }
 
-function extractNow(model: LoadedCage, argument: string, origin: Origin, patterns: Parts | undefined): ExtractedNear {
+function extractNow(
+  model: LoadedCage,
+  argument: string,
+  origin: Origin,
+  { parts: patterns, cageUvs }: ExtractOptions,
+): ExtractedNear {
   const object = objectOf(model, argument);
   const { parts, leftOut, accessories, kept, excluded } = listParts(object, argument, patterns);
   const placed = ({ geometry, matrix }: Part) => ({
@@ -139,7 +146,11 @@ function extractNow(model: LoadedCage, argument: string, origin: Origin, pattern
     placeIndices(part, indices, argument);
     group = placeGroups(part, groups, group);
   }
-  const uvs = readUvs(parts, vertices, argument, isLoadedGltf(model) ? model : undefined);
+  const uvs = readUvs(
+    parts,
+    argument,
+    layoutsOf(parts, { argument, cageUvs }, isLoadedGltf(model) ? model : undefined),
+  );
   const groupsOf = (numbers: readonly number[]) =>
     numbers.flatMap((p) => {
       const { firstVertex, vertexCount } = parts[p]!;
@@ -147,7 +158,7 @@ function extractNow(model: LoadedCage, argument: string, origin: Origin, pattern
     });
   const poses = isCage(argument) ? undefined : posesOf(morphedParts(parts, positions));
   const names = groupNames(parts, object);
-  const mesh = { positions, indices, groups, names, ...(uvs && { uvs }), ...(poses && { poses }) };
+  const mesh = { positions, indices, groups, names, ...uvs, ...(poses && { poses }) };
   return {
     mesh,
     parts,
@@ -399,22 +410,32 @@ function placeGroups(
   return Math.max(next, first + 1);
 }
 
+/** How the texture of each part is laid on it; of a cage, the one that is drawn for it. */
+function layoutsOf(
+  parts: readonly Part[],
+  { argument, cageUvs }: { argument: string; cageUvs: number | undefined },
+  loaded: LoadedGltf | undefined,
+): { layout: UvLayout; others: readonly number[] }[] {
+  return parts.map((part) => {
+    if (!isCage(argument)) return { layout: uvLayoutOf(part, loaded), others: [] };
+    return cageLayoutOf(part, loaded, cageUvs, (text) => wrongPart(argument, part.name, text));
+  });
+}
+
 function readUvs(
   parts: readonly Part[],
-  vertices: number,
   argument: string,
-  loaded: LoadedGltf | undefined,
-): Float32Array | undefined {
-  const laid = parts.map((part) => {
-    const layout = uvLayoutOf(part, loaded);
-    return { ...part, layout, uv: uvAttribute(part, layout) };
-  });
+  layouts: ReturnType<typeof layoutsOf>,
+): Pick<Mesh, 'uvs' | 'otherUvSets'> | undefined {
+  const laid = parts.map((part, p) => ({ ...part, ...layouts[p]!, uv: uvAttribute(part, layouts[p]!.layout) }));
   if (!laid.every(({ uv }) => uv)) return undefined;
+  const [vertices] = endOf(parts);
   const uvs = new Float32Array(2 * vertices);
   for (const { name, firstVertex, vertexCount, layout, uv } of laid) {
     if (uv!.count !== vertexCount || uv!.itemSize !== 2)
       throw wrongPart(argument, name, `has ${uv!.count} UVs of ${uv!.itemSize} numbers, not ${vertexCount} of 2`);
     uvs.set(inTexture(valuesOf(uv!), layout), 2 * firstVertex);
   }
-  return uvs;
+  const otherUvSets = [...new Set(laid.flatMap(({ others }) => others))].sort((a, b) => a - b);
+  return { uvs, ...(otherUvSets.length > 0 && { otherUvSets }) };
 }

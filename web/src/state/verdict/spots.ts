@@ -49,6 +49,7 @@ const kWords: Record<FindingCode, string> = {
   uvsWithoutArea: kTorn,
   uvsOverlap: kTorn,
   uvsInPieces: kTorn,
+  uvsUnknown: 'The paint may be laid out for other UVs',
   nothingToPaint: 'Hardly anything is painted',
   faceBare: 'The face stays bare',
   eyesUnknown: 'Nothing tells where the eyes are',
@@ -66,7 +67,7 @@ const kWords: Record<FindingCode, string> = {
 
 const kFace = /^(eyes|face)/;
 /** Findings that another fit does not mend. */
-const kOfModel = /^(eyes|windows|segmentInDoubt|much|piecesApart)/;
+const kOfModel = /^(eyes|windows|uvsUnknown|segmentInDoubt|much|piecesApart)/;
 
 /** The spots to look at, the worst first, then the bare parts. */
 export function spotsOf(looked: Looked): Spot[] {

@@ -116,7 +116,7 @@ export const worthSaying = (findings: readonly Finding[]): Finding[] =>
 export const topicOf = (finding: Finding): string | Finding =>
   /^(cage(?!Back)|target|normals)/.test(finding.code)
     ? 'place'
-    : /^(uvs|degenerate|doubled|nonManifold|cracks)/.test(finding.code)
+    : /^(uvs(?!Unknown)|degenerate|doubled|nonManifold|cracks)/.test(finding.code)
       ? 'surface'
       : finding;
 

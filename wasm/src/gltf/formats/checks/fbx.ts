@@ -12,17 +12,18 @@ const kValues: Record<string, number> = { Y: 2, C: 1, I: 4, F: 4, D: 8, L: 8 };
  * @throws {InputError} that names the bytes and the limit. What is no binary FBX, or a damaged one, is left to the loader.
  */
 export async function checkFbx(bytes: Uint8Array, limits: FormatLimits): Promise<void> {
-  if (new TextDecoder().decode(bytes.subarray(0, 18)) !== 'Kaydara FBX Binary') {
+  if (!isBinaryFbx(bytes)) {
     checkBraces(bytes, 'records', limits); // the loader looks at each line by a pattern as long as it is deep
     return;
   }
   const most = mostBytes(bytes.length, limits);
   let all = 0;
-  for (const { size, packed } of arraysOf(bytes, limits)) {
-    all += Math.max(size, packed ? await inflatedSize(packed, most - all) : 0);
-    if (all > most)
-      throw exceeds(`its arrays decompress to more than ${most.toLocaleString('en')} bytes`, 'expansion', limits);
-  }
+  for (const { arrays } of recordsOf(bytes, limits))
+    for (const { size, packed } of arrays) {
+      all += Math.max(size, packed ? await inflatedSize(packed, most - all) : 0);
+      if (all > most)
+        throw exceeds(`its arrays decompress to more than ${most.toLocaleString('en')} bytes`, 'expansion', limits);
+    }
 }
 
 interface PackedArray {
@@ -32,11 +33,25 @@ interface PackedArray {
   packed: Uint8Array | undefined;
 }
 
+/** A record of a binary FBX. */
+interface FbxRecord {
+  name: string;
+  /** In how many others it is. */
+  depth: number;
+  texts: string[];
+  arrays: PackedArray[];
+}
+
+export const isBinaryFbx = (bytes: Uint8Array): boolean => textOf(bytes.subarray(0, 18)) === 'Kaydara FBX Binary';
+
+const textOf = (bytes: Uint8Array): string => new TextDecoder().decode(bytes);
+
 /**
- * The arrays of all records, one inside the other, as the loader comes to them: it goes from property to property, and takes no notice of
- * how long a record says that they are.
+ * All records, one inside the other, as the loader comes to them: it goes from property to property, and takes no notice of how long a
+ * record says that they are. Ends where the file is damaged.
+ * @throws {InputError} if they are nested too deep.
  */
-function* arraysOf(bytes: Uint8Array, limits: FormatLimits): Generator<PackedArray> {
+export function* recordsOf(bytes: Uint8Array, limits: FormatLimits): Generator<FbxRecord> {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   /** Where the records end that are open. */
   const ends: number[] = [];
@@ -47,8 +62,11 @@ function* arraysOf(bytes: Uint8Array, limits: FormatLimits): Generator<PackedArr
     for (let at = 27; ends.length > 0 || !isEnd(at, bytes.length); ) {
       while (ends.length > 0 && at >= ends.at(-1)!) ends.pop();
       const [end, properties] = [word(at), word(at + size)];
-      at += 3 * size + 1 + view.getUint8(at + 3 * size);
+      const length = view.getUint8(at + 3 * size);
+      at += 3 * size + 1 + length;
       if (end === 0) continue; // what ends a list of records
+      const name = textOf(bytes.subarray(at - length, at));
+      const record: FbxRecord = { name, depth: ends.length, texts: [], arrays: [] };
       for (let p = 0; p < properties; ++p) {
         const type = String.fromCharCode(view.getUint8(at));
         if (type in kArrays) {
@@ -58,12 +76,17 @@ function* arraysOf(bytes: Uint8Array, limits: FormatLimits): Generator<PackedArr
             number,
           ];
           const taken = count * kArrays[type]!;
-          yield { size: taken, packed: encoding === 0 ? undefined : bytes.subarray(at + 13, at + 13 + stored) };
+          const packed = encoding === 0 ? undefined : bytes.subarray(at + 13, at + 13 + stored);
+          record.arrays.push({ size: taken, packed });
           at += 13 + (encoding === 0 ? taken : stored);
         } else if (type in kValues) at += 1 + kValues[type]!;
-        else if (type === 'S' || type === 'R') at += 5 + view.getUint32(at + 1, true);
-        else return; // the loader knows no other
+        else if (type === 'S' || type === 'R') {
+          const end = at + 5 + view.getUint32(at + 1, true);
+          if (type === 'S') record.texts.push(textOf(bytes.subarray(at + 5, end)));
+          at = end;
+        } else return; // the loader knows no other
       }
+      yield record;
       if (at < end && ends.push(end) > limits.nesting) throw tooDeep('records', limits);
     }
   } catch (error) {

@@ -39,12 +39,14 @@ export function cornersOf({ index, attributes }: BufferGeometry): Corners | unde
   return { indices, kept: kept.includes(0) ? kept : undefined };
 }
 
-const sizes = { uv: 2, uv1: 2, position: 3, normal: 3, skinWeight: 4, skinIndex: 4 } as const;
+const sizes = { uv: 2, uv1: 2, uv2: 2, uv3: 2, position: 3, normal: 3, skinWeight: 4, skinIndex: 4 } as const;
 const semantics = {
   position: 'POSITION',
   normal: 'NORMAL',
   uv: 'TEXCOORD_0',
   uv1: 'TEXCOORD_1',
+  uv2: 'TEXCOORD_2',
+  uv3: 'TEXCOORD_3',
   color: 'COLOR_0',
   skinIndex: 'JOINTS_0',
   skinWeight: 'WEIGHTS_0',
@@ -58,10 +60,14 @@ const semantics = {
 export function attributesOf(geometry: BufferGeometry, { indices, kept }: Corners, joints: number): Attributes {
   const attributes: Record<string, Column> = {};
   const { count } = geometry.attributes['position']!;
+  // glTF's second set of UVs needs a first.
+  const isBeyond = (semantic: string) => {
+    const [, set = '0'] = /^TEXCOORD_(\d)$/.exec(semantic) ?? [];
+    return set !== '0' && !(`TEXCOORD_${Number(set) - 1}` in attributes);
+  };
   for (const [name, semantic] of Object.entries(semantics) as [keyof typeof semantics, string][]) {
     const attribute = geometry.attributes[name];
-    // glTF's second set of UVs needs a first.
-    if (!attribute || (name === 'uv1' && !geometry.attributes['uv'])) continue;
+    if (!attribute || isBeyond(semantic)) continue;
     if (joints === 0 && name.startsWith('skin')) continue;
     const size = name === 'color' ? (Math.min(4, Math.max(3, attribute.itemSize)) as 3 | 4) : sizes[name];
     const values = floatsOf(attribute, size, count);
@@ -115,6 +121,8 @@ const finish: { [Name in keyof typeof semantics]: (values: Float32Array) => void
   // The first row of an image is at v = 0.
   uv: flip,
   uv1: flip,
+  uv2: flip,
+  uv3: flip,
   normal(values) {
     clean(values);
     for (let i = 0; i < values.length; i += 3) {

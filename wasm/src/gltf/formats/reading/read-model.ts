@@ -9,6 +9,7 @@ import { exceeds } from '../../checks/read-limits.js';
 import type { Format } from '../../kinds.js';
 import { checkLibraries, checkMaterials, librariesOf } from '../checks/obj.js';
 import { type FormatLimits, mostBytes } from '../limits.js';
+import { nameUvSets } from './fbx.js';
 import { guardLoaders, mendUsd } from './guards.js';
 import { kNotFound, withFiles } from './images.js';
 import { plainMaterials } from './mtl.js';
@@ -51,8 +52,9 @@ const textOf = (bytes: Uint8Array): string => new TextDecoder().decode(bytes);
 
 /** What reads each format. */
 const readers: Record<Format, (bytes: Uint8Array, beside: Beside) => Promise<Object3D>> = {
-  async fbx(bytes, { read, onMissing }) {
+  async fbx(bytes, { read, onMissing, limits }) {
     const scene = await withFiles(read, async () => new FBXLoader().parse(bufferOf(bytes), ''), onMissing);
+    nameUvSets(scene, bytes, limits);
     const centimetres = Number(scene.userData['unitScaleFactor']);
     if (centimetres > 0 && Number.isFinite(centimetres)) scene.scale.multiplyScalar(centimetres / 100);
     return scene;

@@ -2,6 +2,7 @@ import type { GLTF, vec4 } from '@gltf-transform/core';
 import { type Material, Matrix4, type Mesh, type Object3D, type SkinnedMesh } from 'three';
 import { visibilityExtension } from '../../../parts/drawn.js';
 import { joinBytes, packGlb, paddedLength } from '../../../parts/glb.js';
+import { uvSetNames } from '../../../scene/uv-sets.js';
 import { checkImages } from '../../checks/check-images.js';
 import type { ReadLimits } from '../../checks/read-limits.js';
 import { attributesOf, boundsOf, cornersOf, gathererOf } from './geometry.js';
@@ -97,11 +98,16 @@ class SceneWriter {
     });
     const names = Object.keys(morphTargetDictionary ?? {});
     const weights = whole.targets.map((_, t) => morphTargetInfluences?.[t] ?? 0);
+    const sets = geometry.userData[uvSetNames] as string[] | undefined;
+    const extras = {
+      ...(weights.length === names.length && names.length > 0 && { targetNames: names }),
+      ...(sets && { [uvSetNames]: sets }),
+    };
     const written: GLTF.IMesh = {
       ...named(geometry.name || name),
       primitives,
       ...(weights.length > 0 && { weights: weights.map((weight) => (Number.isFinite(weight) ? weight : 0)) }),
-      ...(weights.length === names.length && names.length > 0 && { extras: { targetNames: names } }),
+      ...(Object.keys(extras).length > 0 && { extras }),
     };
     return (this.#json.meshes ??= []).push(written) - 1;
   }
