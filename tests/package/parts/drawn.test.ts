@@ -30,9 +30,45 @@ test('collision shapes are left out by their names, colours are not', () => {
     'hitbox',
     'Collision.001',
     'Body_col',
+    'col_Body',
+    'COL-Body.001',
+    'UCX.Body',
+    'MCDCX_Body_01',
+    'hitbox-head',
+    'Hit_Box_Arm',
+    'ArmHitBox',
+    'HeadHitbox2',
+    'Body Collision',
+    'Body.collision',
+    'BodyCollider',
+    'Body_CollisionMesh',
+    'collision-mesh',
+    'ColliderBox.002',
+    'Colliders',
+    'Body$colonly',
+    'Floor-navmesh',
+    'Body-occonly',
+    'Body-noimp',
+    'helper-tights',
+    'joint-l-knee',
   ];
   assert.deepEqual(left('Body', ...shapes), shapes);
-  assert.deepEqual(left('Body', 'Skin_col', 'Collisionless', 'Protocol', 'Collar'), []);
+  const words = [
+    'Collisionless',
+    'Protocol',
+    'Collar',
+    'Column',
+    'Color',
+    'Colt',
+    'col',
+    'Colossus_body',
+    'Ucxmal',
+    'Whitebox',
+  ];
+  assert.deepEqual(
+    left('Body', 'Skin_col', 'col_Skin', 'Skin-col', ...words, 'joint-1', 'Helper', 'ColliderScope_lens'),
+    [],
+  );
   // Materials of a model, and of another part, that have its colours.
   assert.deepEqual(left(['Body', 'Body_col'], ['Body_col', 'Body'], ['Hair', 'Body_col']), []);
 });

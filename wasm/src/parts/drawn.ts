@@ -47,11 +47,19 @@ export const visibilityExtension = 'KHR_node_visibility';
 /** The extension of glTF for materials that light goes through. */
 export const transmissionExtension = 'KHR_materials_transmission';
 
-/** Names of cages, markers and collision shapes: of Roblox, Unreal, Godot, and usual ones. Programs add numbers to them. */
-const kTechnical =
-  /^(UCX|UBX|USP|UCP|collision|collider|hitbox)(_|[._]?\d*$)|(_(OuterCage|InnerCage|Att)|[_-](collision|collider|hitbox|(conv)?colonly))([._]?\d+)?$/i;
-/** What the node of a collision shape adds to the name of its model; in names of materials it stands for a colour. */
-const kShapeOf = /[_-](conv)?col([._]?\d+)?$/i;
+/** Names of cages, markers and collision shapes: of Roblox, Unreal, Godot, MakeHuman, and usual ones. Programs add numbers to them. */
+const kTechnical = [
+  /^(UCX|UBX|USP|UCP|MCDCX)([ ._-]|\d*$)|_(OuterCage|InnerCage|Att)([._]?\d+)?$|^helper-/i,
+  /[_$-]((conv)?colonly|navmesh|occonly|noimp)([._]?\d+)?$/i,
+  /^(collision|collider|hit[ _-]?box)(e?s)?([ ._-]|[ ._-]?(mesh|box|shape|hull|geo|proxy)?[._]?\d*$)/i,
+  /[ ._$-](collision|collider|hit[ _-]?box)(e?s)?[ ._-]?(mesh|box|shape|hull|geo|proxy)?([._]?\d+)?$/i,
+  /[a-z\d](Collision|Collider|Hit_?[Bb]ox)(e?s)?(Mesh|Box|Shape|Hull|Geo|Proxy)?([._]?\d+)?$/,
+];
+/** The node of a collision shape, by the name of its model; in names of materials `col` stands for a colour. */
+const kShapeOf = /^(.+)[_-](conv)?col([._]?\d+)?$|^(conv)?col[_-](.+?)([._]?\d+)?$/i;
+/** A cube at a joint of MakeHuman's mesh, beside its helpers. */
+const kJoint = /^joint-/;
+const kHelper = /^helper-/;
 
 /** Words that name what a figure wears or carries. */
 const kAccessories =
@@ -173,11 +181,14 @@ function isAccessory(name: string | undefined): boolean {
 /** Why each part is not drawn, if it is not. */
 function whyNotDrawn(looks: readonly Look[]): (LeftOut['why'] | undefined)[] {
   const all = new Set(looks.flatMap(({ names }) => names));
+  const hasHelpers = [...all].some((name) => name !== undefined && kHelper.test(name));
   const isTechnical = (names: Look['names']): boolean => {
     const [node = ''] = names;
-    const model = node.replace(kShapeOf, '');
-    const isShape = model !== node && all.has(model) && !names.includes(model);
-    return isShape || names.some((name) => name !== undefined && kTechnical.test(name));
+    const [, before, , , , after] = kShapeOf.exec(node) ?? [];
+    const model = before ?? after;
+    const isShape = model !== undefined && all.has(model) && !names.includes(model);
+    const isOne = (name: string) => kTechnical.some((some) => some.test(name)) || (hasHelpers && kJoint.test(name));
+    return isShape || names.some((name) => name !== undefined && isOne(name));
   };
   const reasons = looks.map(({ names, isHidden, isClear }): LeftOut['why'] | undefined => {
     if (isTechnical(names)) return 'name';
