@@ -73,6 +73,29 @@ describe('inspect', () => {
     );
   });
 
+  test('loose pieces that hide the main one of their part are a finding, clothes over a body that shows are none', () => {
+    const skin = ball([0, 0, 0], () => 1, 24, 48);
+    const around = ball([0, 0, 0], () => 1.2, 16, 24);
+    const hides = (...shells: Mesh[]) =>
+      inspect(around, { ...join3d(skin, ...shells), groups: undefined, names: ['Human'] }).findings.find(
+        ({ code }) => code === 'muchHidden',
+      );
+    const shell = ball([0, 0, 0], () => 1.06, 12, 16);
+    const half = (isKept: (x: number, y: number, z: number) => boolean) => within(shell, isKept);
+    // Two shells together, neither of which hides much by itself.
+    for (const shells of [[shell], [half((_, y) => y > -0.1), half((_, y) => y < 0.1)]]) {
+      const { sentence, advice, ignore, places } = hides(...shells)!;
+      assert.match(
+        sentence,
+        /^Loose pieces of "Human" hide \d+\.\d % of its main piece, which could be painted without/,
+      );
+      assert.match(advice, /delete them in the file/);
+      assert.deepEqual([ignore, places!.map(({ segment }) => segment)], [undefined, [0]]);
+    }
+    assert.equal(hides(half((_, y) => y < 0.1)), undefined);
+    assert.equal(hides(), undefined);
+  });
+
   test('a bare face is the first finding, if it is known where the eyes are', () => {
     const skin = ball([0, 0, 0], () => 1, 24, 48);
     const shell = ball([0, 0, 0], () => 1.1, 16, 24) as Whole;
