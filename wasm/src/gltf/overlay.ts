@@ -1,4 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
+import type { IsFree } from '../bake/alpha.js';
 import { InputError } from '../scene/input-error.js';
 import { emissiveExtension, unlitExtension } from '../scene/materials.js';
 import { uvLayoutOf } from '../scene/uv-layout.js';
@@ -13,9 +14,6 @@ export const uvsMark = { cagecastUvs: true } as const;
 /** Whether an attribute, whose accessor has these extras, was added by a transfer. */
 export const isOfTransfer = (semantic: string, extras: object | undefined): boolean =>
   /^_NCZ(_\d+)?$/.test(semantic) || (extras as Partial<typeof uvsMark> | undefined)?.cagecastUvs === true;
-
-/** Whether a paint hides all of a triangle. @param uvs  2 per vertex. */
-export type Hides = (uvs: ArrayLike<number>, a: number, b: number, c: number) => boolean;
 
 /** What textures and materials are added to. */
 export interface TextureWriter {
@@ -51,7 +49,7 @@ export interface Paint {
    * Whether it hides all of a triangle, whose place the overlay then takes: it is drawn as the surface itself, before what is transparent.
    * Default: all of the overlay is blended
    */
-  hides?: Hides | undefined;
+  hides?: IsFree | undefined;
   /** What else there is of a look: it lies on a copy of the surface, in whose place that comes. Default: colours alone */
   look?: OverlaidLook | undefined;
 }

@@ -141,7 +141,7 @@ export function namedParts({ json }: Pick<SceneSource, 'json'>, parts: readonly 
 }
 
 /** Returns what tells whether a part is drawn. */
-function looksOf({ json, accessors }: SceneSource): (part: Part) => Look {
+function looksOf({ json, accessors, clear }: SceneSource): (part: Part) => Look {
   const { meshes = [], nodes = [], materials = [] } = json;
   const hidden = new Set<number>();
   const isOff = ({ extensions }: GLTF.INode) =>
@@ -153,7 +153,8 @@ function looksOf({ json, accessors }: SceneSource): (part: Part) => Look {
   }
   const namesAbove = aboveIn(json);
   return ({ node, mesh, primitive, aliases, matrix, localPositions, localIndices }) => {
-    const { material: number = -1, attributes } = meshes[mesh]!.primitives[primitive]!;
+    const def = meshes[mesh]!.primitives[primitive]!;
+    const { material: number = -1, attributes } = def;
     const material = materials[number];
     const colors = accessors[attributes['COLOR_0'] ?? -1];
     const alpha =
@@ -165,7 +166,7 @@ function looksOf({ json, accessors }: SceneSource): (part: Part) => Look {
       names: aliases,
       above: namesAbove(node),
       isHidden: hidden.has(node),
-      isClear: isClear(material?.alphaMode, alpha, material?.alphaCutoff),
+      isClear: clear?.has(def) || isClear(material?.alphaMode, alpha, material?.alphaCutoff),
       sides: material?.doubleSided ? 'both' : 'front',
       positions: localPositions,
       indices: localIndices,

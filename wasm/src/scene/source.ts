@@ -14,6 +14,8 @@ export interface SceneSource {
   readonly accessors: readonly AccessorData[];
   /** Whether people know its elements by names alone, so that messages have no numbers. Default: no. */
   readonly isUnnumbered?: true;
+  /** Primitives that are transparent wherever they lie, as `clearPrimitives` finds them. Default: none are known. */
+  readonly clear?: ReadonlySet<GLTF.IMeshPrimitive> | undefined;
   /** The UV set that counts where it is a cage, if it was chosen. Default: `chooseUvSet` finds it. */
   readonly cageUvs?: UvSetChoice | undefined;
   /** The file of the image of a texture; `undefined` if it has none. */

@@ -2,9 +2,11 @@ import { statSync } from 'node:fs';
 import { isTemplateName } from '../../cages/template-names.js';
 import { errorInFile, type ReadModel } from '../../gltf/read-model.js';
 import { hasCages } from '../../parts/own-cages.js';
+import { clearPrimitives } from '../../scene/clear-textures.js';
 import { extract, type WhichCount } from '../../scene/extract.js';
 import { InputError } from '../../scene/input-error.js';
 import type { UvSetChoice } from '../../scene/uv-sets.js';
+import { decodeImage } from '../io/images.js';
 import type { Io } from '../io/io.js';
 import { readGltf } from '../io/read-gltf.js';
 import type { ReadOptions } from '../model/reading.js';
@@ -27,7 +29,8 @@ export async function readModel(
   io.step(`reading ${path}`);
   if (whichCount === 'cage' && isTemplateName(path) && !statSync(path, { throwIfNoEntry: false })?.isFile())
     throw new InputError(`no such file; to fit the template of this name, give --template ${path}`).in(path);
-  const file = await readGltf(path, reading, bytes);
+  const read = await readGltf(path, reading, bytes);
+  const file = whichCount === 'cage' ? read : { ...read, clear: await clearPrimitives(read, decodeImage) };
   const extracted = extract(file, 'own', whichCount, '; name what counts by --keep');
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   const what = (file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene';

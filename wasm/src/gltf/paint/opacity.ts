@@ -1,10 +1,6 @@
+import { freeOf, type IsFree, mayBeClear } from '../../bake/alpha.js';
 import type { Image } from '../../bake/image.js';
-import type { Hides, Paint } from '../overlay.js';
-
-/** The cells of a grid, along each side at most, that say of an image whether it is opaque there. */
-const kMostCells = 1024;
-/** How many texels beyond a triangle are looked at, as pictures of half the size mix them in. */
-const kMargin = 2;
+import type { Paint } from '../overlay.js';
 
 /**
  * Finds where a paint is opaque: by its header alone if it has no transparency.
@@ -13,59 +9,12 @@ const kMargin = 2;
 export async function opacityOf(
   { bytes, mimeType, area }: Paint,
   decode: ((bytes: Uint8Array, mimeType: string) => Promise<Image> | Image) | undefined,
-): Promise<Hides | undefined> {
-  if (mimeType === 'image/jpeg' || (mimeType === 'image/png' && !mayBeClear(bytes))) return () => true;
+): Promise<IsFree | undefined> {
+  if (!mayBeClear(bytes, mimeType)) return () => true;
   try {
     const image = mimeType === 'image/ktx2' ? undefined : await decode?.(bytes, mimeType);
-    return image && opaqueIn(image, area === 'bounded');
+    return image && freeOf(image, (alpha) => alpha < 255, area === 'bounded');
   } catch {
     return undefined; // Not every image can be decoded everywhere.
   }
-}
-
-/** Whether a PNG has alpha, in its pixels or its palette. */
-function mayBeClear(png: Uint8Array): boolean {
-  const view = new DataView(png.buffer, png.byteOffset, png.byteLength);
-  const kColorType = 25;
-  if (png[kColorType]! >= 4) return true;
-  for (let at = 8; at + 8 <= png.length; at += 12 + view.getUint32(at)) {
-    const type = String.fromCharCode(...png.subarray(at + 4, at + 8));
-    if (type === 'tRNS') return true;
-    if (type === 'IDAT') return false;
-  }
-  return false;
-}
-
-function opaqueIn({ width, height, data }: Image, isClamped: boolean): Hides {
-  const size = Math.max(1, Math.ceil(Math.max(width, height) / kMostCells));
-  const [columns, rows] = [Math.ceil(width / size), Math.ceil(height / size)];
-  const clear = new Uint8Array(columns * rows);
-  for (let i = 0; i < width * height; ++i)
-    if (data[4 * i + 3]! < 255)
-      clear[columns * Math.floor(Math.floor(i / width) / size) + Math.floor((i % width) / size)] = 1;
-  // How many cells are not opaque, above and to the left of a corner of the grid.
-  const sums = new Uint32Array((columns + 1) * (rows + 1));
-  for (let y = 0; y < rows; ++y)
-    for (let x = 0, row = 0; x < columns; ++x) {
-      row += clear[columns * y + x]!;
-      sums[(columns + 1) * (y + 1) + x + 1] = sums[(columns + 1) * y + x + 1]! + row;
-    }
-  const sum = (x: number, y: number) => sums[(columns + 1) * y + x]!;
-  const all = sum(columns, rows) === 0;
-  return (uvs, a, b, c) => {
-    if (all) return true;
-    const range = (k: 0 | 1, texels: number, cells: number): [number, number] => {
-      const values = [uvs[2 * a + k]!, uvs[2 * b + k]!, uvs[2 * c + k]!];
-      const start = isClamped ? 0 : Math.floor(Math.min(...values));
-      const cell = (share: number, margin: number) => Math.floor(((share - start) * texels + margin) / size);
-      const [from, to] = [cell(Math.min(...values), -kMargin), cell(Math.max(...values), kMargin) + 1];
-      // Beyond its border a texture begins anew.
-      if (!isClamped && (from < 0 || to > cells)) return [0, cells];
-      const within = (at: number) => Math.min(cells - 1, Math.max(0, at));
-      return [within(from), within(to - 1) + 1];
-    };
-    const [left, right] = range(0, width, columns);
-    const [top, bottom] = range(1, height, rows);
-    return sum(right, bottom) - sum(left, bottom) - sum(right, top) + sum(left, top) === 0;
-  };
 }

@@ -48,10 +48,10 @@ export interface PaintOptions
   /** Spots of the model for the fit, in the space of its scene; they override those that are found. Default: none. */
   landmarks?: Landmarks | undefined;
   /**
-   * Decodes an image of the model for the fit, to find a face that is only painted; and a texture with alpha, to find where it is
-   * opaque: there the overlay is drawn as the surface itself, so that transparent hair before it stays before it. Rejected images are left
-   * out. And all images for a look. Default: the browser's own; other hosts look at no colours, blend all of a texture with alpha, and
-   * read PNGs for a look.
+   * Decodes an image: of the model for the fit, to find a face that is only painted; one with alpha, to leave out parts that it makes
+   * invisible; a texture with alpha, to find where it is opaque: there the overlay is drawn as the surface itself, so that transparent
+   * hair before it stays before it; and all for a look. Rejected images are left out. Default: the browser's own; other hosts look at no
+   * colours or alpha of the model, blend all of a texture with alpha, and read PNGs for a look.
    */
   decode?: ImageCodec['decode'] | undefined;
   /** Writes images with a look. Default: PNGs. */

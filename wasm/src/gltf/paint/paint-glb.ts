@@ -8,6 +8,7 @@ import { noteOf } from '../../inspect/bare.js';
 import { isWorse } from '../../inspect/finding.js';
 import type { PreparedPart } from '../../parts/prepare.js';
 import type { PartRange } from '../../parts/split-part.js';
+import { clearPrimitives } from '../../scene/clear-textures.js';
 import { extract, type Part } from '../../scene/extract.js';
 import { InputError } from '../../scene/input-error.js';
 import { isMirrored } from '../../scene/matrix.js';
@@ -77,7 +78,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     signal?.throwIfAborted();
     onProgress(0, 'reading');
     const computing = await engine();
-    const target = await readModel('bytes', bytesOf('bytes', bytes), { parts: patterns, decoders });
+    const target = await readModel('bytes', bytesOf('bytes', bytes), { parts: patterns, decoders, decode });
     const fitted =
       template &&
       (await fitTo(target, template, { inspect: computing.inspect, landmarks, decode, signal, onProgress }));
@@ -117,7 +118,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
           ...{ form, result, size, decode, encode, write },
           regions: regionsIn(around),
           prepared: prepared.parts,
-          read: (painted) => readModel('bytes', painted, { parts: patterns, decoders }),
+          read: (painted) => readModel('bytes', painted, { parts: patterns, decoders, decode }),
         });
     signal?.throwIfAborted();
     onProgress(1, 'writing');
@@ -179,17 +180,19 @@ async function readModel(
     beside,
     parts,
     decoders,
+    decode = hostDecode(),
     cageUvs,
-  }: { beside?: ReadModel; parts?: Parts | undefined } & Pick<PaintOptions, 'decoders' | 'cageUvs'> = {},
+  }: { beside?: ReadModel; parts?: Parts | undefined } & Pick<PaintOptions, 'decoders' | 'decode' | 'cageUvs'> = {},
 ): Promise<ReadModel> {
   const { meshopt, draco } = decoders ?? {};
-  const file = await openGltf(name, bytes, {
+  const opened = await openGltf(name, bytes, {
     cageUvs,
     decoders: {
       meshopt: () => (meshopt ? started(meshopt) : meshoptDecoder().catch(adviseDecoder)),
       ...(draco && { draco: async () => draco }),
     },
   });
+  const file = beside ? opened : { ...opened, clear: await clearPrimitives(opened, decode) };
   const extracted = extract(file, beside?.extracted.origin ?? 'own', beside ? 'cage' : parts);
   if (extracted.mesh.indices.length > 0) return { file, extracted };
   throw new InputError('has no triangles in its scene; at least one is needed').in(name);

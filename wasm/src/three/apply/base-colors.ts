@@ -1,18 +1,12 @@
 import type { BufferGeometry, MeshStandardMaterial, Object3D, Texture } from 'three';
-import { type Image, resize } from '../../bake/index.js';
+import { resize } from '../../bake/index.js';
 import { smallSize } from '../../bake/small-image.js';
 import { type Pictures, picturesOf, readBaseColors } from '../../scene/base-colors.js';
-import { type Context, makeCanvas } from '../canvas.js';
+import { type PixelSource, pixelsOf } from '../pixels.js';
 import { valuesOf } from './attributes.js';
 import { asItWas, extract, type Part } from './extract-scene.js';
 import { materialOfGroups } from './names.js';
 import { inTexture, uvAttribute, uvLayoutOf } from './uv-layout.js';
-
-/** A picture that a canvas can draw. */
-type Drawable = CanvasImageSource & { width: number; height: number };
-
-/** What a texture of any kind has as its image. */
-type Source = Partial<Omit<Image, 'data'>> & { data?: unknown };
 
 /**
  * What the parts of a scene look like, as `CageModel` has it. Each texture is read once, in a task of its own; one whose pixels cannot be
@@ -58,37 +52,8 @@ async function imageOf({ source, flipY }: Texture): Promise<Pictures | undefined
   const before = known.get(source);
   if (before?.version === source.version) return before.pictures;
   await new Promise((resolve) => setTimeout(resolve));
-  const image = read(source.data as Source | undefined, flipY);
-  const pictures = image && picturesOf(image);
+  const image = pixelsOf(source.data as PixelSource | undefined, flipY);
+  const pictures = image && picturesOf(resize(image, ...smallSize(image)));
   known.set(source, { version: source.version, pictures });
   return pictures;
-}
-
-/** The pixels of an image, the upper row first as its UVs have it, and small. */
-function read(source: Source | undefined, isFlipped: boolean): Image | undefined {
-  const { width = 0, height = 0, data } = source ?? {};
-  if (width === 0 || height === 0) return undefined;
-  if (data !== undefined) {
-    const isRead = data instanceof Uint8Array || data instanceof Uint8ClampedArray;
-    if (!isRead || data.length !== 4 * width * height) return undefined;
-    const image = resize({ width, height, data }, ...smallSize({ width, height }));
-    return isFlipped ? flipped(image) : image;
-  }
-  const [columns, rows] = smallSize({ width, height });
-  try {
-    const context = makeCanvas(columns, rows).getContext('2d', { willReadFrequently: true }) as Context | null;
-    if (!context) return undefined;
-    if (isFlipped) context.setTransform(1, 0, 0, -1, 0, rows);
-    context.drawImage(source as Drawable, 0, 0, columns, rows);
-    return { width: columns, height: rows, data: context.getImageData(0, 0, columns, rows).data };
-  } catch {
-    return undefined; // no canvas, an image of another origin, or none that can be drawn
-  }
-}
-
-function flipped({ width, height, data }: Image): Image {
-  const out = new Uint8Array(data.length);
-  for (let row = 0; row < height; ++row)
-    out.set(data.subarray(4 * width * row, 4 * width * (row + 1)), 4 * width * (height - 1 - row));
-  return { width, height, data: out };
 }

@@ -28,6 +28,7 @@ import { bareNames } from '../../parts/template-extras.js';
 import { endOf } from '../../scene/pieces.js';
 import { wrong } from '../errors.js';
 import { type Attribute, targetDeltas, valuesOf } from './attributes.js';
+import { isClearByMap } from './clear-map.js';
 import { giveBackTriangles, isLost, isMarked } from './earlier-overlays.js';
 import { isGeometry, isInstanced, isMesh, isObject, isOfInstances } from './flags.js';
 import { isCage, isLoadedGltf, type LoadedCage, type LoadedGltf, objectOf } from './models.js';
@@ -297,13 +298,14 @@ function lookOf(mesh: ThreeMesh, matrix: Matrix4, root: Object3D): Look {
       .slice(1)
       .map(({ name }) => name),
     isHidden: below(root, mesh).some(isOff) || all(({ visible }) => !visible),
-    isClear: all(({ transparent, alphaTest, opacity, vertexColors }) =>
-      isClear(
-        transparent ? 'BLEND' : alphaTest > 0 ? 'MASK' : 'OPAQUE',
-        opacity * (vertexColors ? alpha : 1),
-        alphaTest,
-      ),
-    ),
+    isClear: all((material) => {
+      const { transparent, alphaTest, opacity, vertexColors } = material;
+      const least = opacity * (vertexColors ? alpha : 1);
+      return (
+        isClear(transparent ? 'BLEND' : alphaTest > 0 ? 'MASK' : 'OPAQUE', least, alphaTest) ||
+        isClearByMap(geometry, material, least)
+      );
+    }),
     sides: all(({ side }) => side === FrontSide) ? 'front' : all(({ side }) => side === BackSide) ? 'back' : 'both',
     positions: position ? valuesOf(position) : [],
     indices: geometry.index?.array,

@@ -12,7 +12,7 @@ export interface UvLayout {
 }
 
 /** How a texture lies on its UVs: `Texture.matrix` would scale last. */
-const layoutOf = ({ channel, offset, rotation, repeat }: Texture): UvLayout => ({
+export const layoutOf = ({ channel, offset, rotation, repeat }: Texture): UvLayout => ({
   channel,
   transform: { offset: [offset.x, offset.y], rotation, scale: [repeat.x, repeat.y] },
 });
