@@ -283,6 +283,24 @@ test('the picture is filled by parts, by a cage, or by the head that a joint hol
   });
   const face = await draw(withHead, { size: kSize, view: 'face' });
   assert.deepEqual([face.framed, ...pixel(face.data, 0.05, 0.05)], ['face', 0, 255, 0, 255]);
+  // As of an FBX: each mesh has a skeleton of its own, whose head is in the same place.
+  const withHeads = quads(
+    [{ material: plain(red), half: 4 }, { z: 2, half: 2.5, material: plain(red) }, list[1]!],
+    (maker) => {
+      const { json } = maker;
+      const heads = [1, 2].map((child) => maker.node({ name: 'Head', children: [child] }));
+      const hips = maker.node({ name: 'Hips' });
+      json.scenes![0]!.nodes = [0, ...heads, hips];
+      json.skins = [{ joints: [hips, ...heads] }];
+      json.nodes[0]!.skin = 0;
+      const { attributes } = json.meshes[0]!.primitives[0]!;
+      attributes['JOINTS_0'] = maker.accessor(new Uint8Array(16), 'VEC4');
+      const weights = Float32Array.from({ length: 16 }, (_, i) => Number(i % 4 === 0));
+      attributes['WEIGHTS_0'] = maker.accessor(weights, 'VEC4');
+    },
+  );
+  const heads = await draw(withHeads, { size: kSize, view: 'face' });
+  assert.deepEqual([heads.framed, ...pixel(heads.data, 0.05, 0.05)], ['face', 0, 255, 0, 255]);
 });
 
 test('views turn around the model, which looks at −z if it is of VRM 0', async () => {

@@ -10,6 +10,8 @@ import type { View } from './views.js';
 const kMargin = 1.06;
 /** Joints of heads: "Head", "mixamorig:Head", "J_Bip_C_Head"; not "HeadTop_End". */
 const kHead = /(^|[^a-z])head(?![a-z])/i;
+/** How far joints in one place are apart at most, along each axis: a millimetre. */
+const kSamePlace = 1e-3;
 
 /** Where a picture is centred and how wide it is, so that points fit in. @param points  3 numbers each. */
 export function framed(points: ArrayLike<number>, view: View): Pick<Framing, 'middle' | 'radius'> {
@@ -41,15 +43,22 @@ export function pointsOf(surfaces: readonly Surface[]): Float32Array {
   return points;
 }
 
-/** The points of a head: what its joint holds more than any other joint does. Undefined if no joint is called so, or holds nothing. */
+/**
+ * The points of a head: what its joint holds more than any other joint does, or others of the same name in its place, as in files with a
+ * skeleton for each mesh. Undefined if no joint is called so, or holds nothing.
+ */
 export function headPoints(file: GltfFile, drawn: Drawn, surfaces: readonly Surface[]): Float32Array | undefined {
   const { joints, vertexJoints } = skeletonOf(file, drawn);
-  const head = joints.findIndex(({ name }) => kHead.test(name));
-  if (head < 0) return undefined;
+  const head = joints.find(({ name }) => kHead.test(name));
+  if (!head) return undefined;
+  const isHead = joints.map(
+    ({ name, position }) =>
+      name === head.name && position.every((x, k) => Math.abs(x - head.position[k]!) <= kSamePlace),
+  );
   const points: number[] = [];
   drawn.parts.forEach(({ firstVertex, vertexCount }: Part, p) => {
     for (let v = 0; v < vertexCount; ++v)
-      if (vertexJoints[firstVertex + v] === head) points.push(...pointAt(surfaces[p]!.positions, v));
+      if (isHead[vertexJoints[firstVertex + v]!]) points.push(...pointAt(surfaces[p]!.positions, v));
   });
   return points.length > 0 ? Float32Array.from(points) : undefined;
 }
