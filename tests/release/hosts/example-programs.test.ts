@@ -5,6 +5,7 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, describe, test } from 'node:test';
 import { validate } from '../../support/gltf.js';
+import { installPacked, run } from './install.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-examples-'));
 const sample = 'examples/samples/lizard';
@@ -17,6 +18,9 @@ function nodeIn(cwd: string, ...args: string[]): string {
   assert.equal(status, 0, stderr);
   return stdout;
 }
+
+const blocks = (page: string, kind: string): string[] =>
+  [...readFileSync(page, 'utf8').matchAll(new RegExp(`\`\`\`${kind}\n([^]*?)\`\`\``, 'g'))].map(([, text]) => text!);
 
 describe('examples', () => {
   test('node/arrays.js prints where each vertex lies in the texture', () => {
@@ -36,12 +40,32 @@ describe('examples', () => {
     );
     assert.deepEqual(await validate(out), []);
   });
+
+  test('node/README.md paints one texture on many faces, with the packed package, in an empty folder', async () => {
+    const user = installPacked();
+    try {
+      const lines = blocks('examples/node/README.md', 'sh')[0]!.trim().split('\n');
+      const [, install, ...others] = lines;
+      assert.deepEqual([lines[0], install], ['npm init -y', 'npm install path/to/cagecast/cagecast-0.1.0.tgz']);
+      for (const line of others) run('sh', ['-c', line.replaceAll('path/to/cagecast', resolve('.'))], user);
+      const results = readFileSync(join(user, 'results.jsonl'), 'utf8').trim().split('\n');
+      const verdicts = results.map((line) => JSON.parse(line)).map(({ target, verdict }) => [target, verdict]);
+      const names = ['avatar', 'body', 'human'];
+      assert.deepEqual(
+        verdicts.sort(),
+        names.map((name) => [`faces/${name}.glb`, 'good']),
+      );
+      for (const name of names) {
+        assert.deepEqual(await validate(join(user, `painted/${name}.glb`)), []);
+        assert.equal(readFileSync(join(user, `pictures/${name}.png`)).toString('latin1', 1, 4), 'PNG');
+      }
+    } finally {
+      rmSync(user, { recursive: true, force: true });
+    }
+  });
 });
 
 describe('the quick start', () => {
-  const blocks = (page: string, kind: string) =>
-    [...readFileSync(page, 'utf8').matchAll(new RegExp(`\`\`\`${kind}\n([^]*?)\`\`\``, 'g'))].map(([, text]) => text!);
-
   test('of docs/three.md is the example three', () => {
     assert.equal(blocks('docs/three.md', 'js')[0], readFileSync('examples/three/main.js', 'utf8'));
   });
