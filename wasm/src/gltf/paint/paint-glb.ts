@@ -5,7 +5,7 @@ import { isTemplateName } from '../../cages/template-names.js';
 import { CagecastError } from '../../core/error.js';
 import { plainArray } from '../../core/typed-arrays.js';
 import { noteOf } from '../../inspect/bare.js';
-import { isWorse } from '../../inspect/finding.js';
+import { type Finding, isWorse, type Verdict } from '../../inspect/finding.js';
 import type { PreparedPart } from '../../parts/prepare.js';
 import type { PartRange } from '../../parts/split-part.js';
 import { clearPrimitives } from '../../scene/clear-textures.js';
@@ -95,11 +95,7 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
     const { source, result, verdict, findings } = judged;
     const arrays = [source.extracted.mesh, pair.target.extracted.mesh] as const;
     if (isWorse(verdict, atLeast))
-      throw new CagecastError(
-        'badModel',
-        'paintGlb',
-        `the cage is ${verdict}, not ${atLeast}: ${findings[0]!.sentence}`,
-      );
+      throw new CagecastError('badModel', 'paintGlb', notEnough(verdict, atLeast, findings));
     const prepared = await computing.prepareParts(...arrays, {
       ...compute,
       ...{ result, ranges: target.extracted.parts.map(rangeOf), borders, separatePaint: false },
@@ -143,6 +139,9 @@ export async function paintGlb(bytes: Uint8Array, options: PaintOptions): Promis
       : error;
   }
 }
+
+const notEnough = (verdict: Verdict, atLeast: Verdict, findings: readonly Finding[]): string =>
+  `the cage is ${verdict}, not ${atLeast}: ${findings[0]!.sentence}`;
 
 /** Where a part is in the arrays of its target. */
 const rangeOf = ({ firstVertex, vertexCount, firstTriangle, triangleCount, matrix }: Part): PartRange => ({
