@@ -25,7 +25,7 @@ export const renderer = {
   render: nothing,
 } as unknown as WebGLRenderer;
 
-/** Bytes that a call allocates once it is compiled, as the median of several rounds, for garbage may be collected in one. */
+/** Bytes that a call allocates once it is compiled: the least of several rounds but those in which garbage was collected. */
 export function allocatedBy(call: () => void): number {
   const calls = 2000;
   for (let i = 0; i < 50 * calls; ++i) call();
@@ -34,5 +34,5 @@ export function allocatedBy(call: () => void): number {
     for (let i = 0; i < calls; ++i) call();
     return (process.memoryUsage().heapUsed - before) / calls;
   });
-  return rounds.sort((a, b) => a - b)[4]!;
+  return Math.min(...rounds.filter((bytes) => bytes >= 0));
 }
