@@ -36,8 +36,10 @@ function samples(): Plugin {
 /** The files in the list of samples, relative to it. */
 async function sampleFiles(): Promise<string[]> {
   const text = await readFile(path.join(kSamples, 'index.json'), 'utf8');
-  const samples: { target: string; cage: string; paints: { file: string }[] }[] = JSON.parse(text);
-  return [...new Set(samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)]))];
+  const samples: { target: string; cage: string; truth?: string; paints: { file: string }[] }[] = JSON.parse(text);
+  const filesOf = ({ target, cage, truth, paints }: (typeof samples)[number]): string[] =>
+    [target, cage, truth ?? [], paints.map(({ file }) => file)].flat();
+  return [...new Set(samples.flatMap(filesOf))];
 }
 
 /** Uses the package's separate .wasm file: page and worker share it, and it compiles while it loads. */
@@ -111,7 +113,7 @@ export default defineConfig({
             // Modules of the first view that features share. No worker may import them, nor may they import app.ts, as it waits for features.
             {
               name: 'shared',
-              test: /web\/src\/(export\/link\.|loading\/(extract-mesh|file-paths|load-paint|samples|transfer-client)|panels\/part-menu|platform\/(ask|download|face|graphics|make|page|programs|shelf|store)\.|state\/(?!project|wardrobe|control-steps|verdict\/spots|wording)|tools\/(paint\/ring|cage\/(landmark-dots|arrow-keys))|view\/(colors|framing|overlay|pick|ray|segments))/,
+              test: /web\/src\/(export\/link\.|loading\/(extract-mesh|file-paths|load-paint|samples|transfer-client)|panels\/part-menu|platform\/(ask|download|face|graphics|make|page|programs|shelf|store)\.|state\/(?!project|wardrobe|study|control-steps|verdict\/spots|wording)|tools\/(paint\/ring|cage\/(landmark-dots|arrow-keys))|view\/(colors|framing|overlay|pick|ray|segments))/,
             },
           ],
         },

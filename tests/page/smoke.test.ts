@@ -77,7 +77,6 @@ describe('without a picture', () => {
     const strict = await shownCounts(page);
     assert.ok(strict.cosmetic < before.cosmetic);
     await setThreshold(page, 0.5);
-    await page.locator('#parts summary').click();
     const { name } = (await shownParts(page)).find(({ culled }) => !culled)!;
     const override = page.getByLabel(`Override for ${name}`, { exact: true });
     await override.selectOption('exclude');
@@ -89,7 +88,7 @@ describe('without a picture', () => {
   });
 
   test('the preset of the paper has fewer steps and other counts', async () => {
-    const steps = () => page.locator('#timings dt').count();
+    const steps = () => page.locator('#timings th').count();
     const before = { counts: await shownCounts(page), steps: await steps() };
     await choose('preset', 'paper');
     assert.notDeepEqual(await shownCounts(page), before.counts);

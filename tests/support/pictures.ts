@@ -162,7 +162,6 @@ async function why(site: Site): Promise<void> {
     [0.42, 0.58],
   ] as const) {
     await page.mouse.click(stage.x + x * stage.width, stage.y + y * stage.height);
-    await page.locator('#explain').evaluate((section) => section.scrollIntoView({ block: 'center' }));
     await rest(page);
     shots.push(dataUri(await page.screenshot({ type: 'png' })));
   }

@@ -213,7 +213,7 @@ export interface ShownPart {
 export function shownParts(page: Page): Promise<ShownPart[]> {
   return page
     .getByTestId('segment-table')
-    .locator('tbody tr')
+    .locator('tbody tr:not(.mesh)')
     .evaluateAll((rows) =>
       rows.map((row) => {
         const [name, points, covered, verdict] = [...row.children].map((cell) => cell.textContent ?? '');

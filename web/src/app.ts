@@ -18,7 +18,7 @@ import { setUpRules } from './panels/rules';
 import { setUpSectionNav } from './panels/section-nav';
 import { showStatus } from './panels/status';
 import { FitPanel } from './panels/verdict/fit-panel';
-import { face, setUpFaces } from './platform/face';
+import { face, onFace, setUpFaces } from './platform/face';
 import { setUpLanguage } from './platform/language';
 import { catchLostFocus } from './platform/lost-focus';
 import { announce, element } from './platform/page';
@@ -94,7 +94,6 @@ const maker = new CageMaker({ session, loader, engine, announce });
 setUpCagePanel(session, maker);
 const stage = viewer && setUpStage(viewer);
 if (!stage) {
-  element('explain', HTMLElement).hidden = true;
   element('open-wardrobe', HTMLButtonElement).hidden = true;
 }
 new LayerList(stack, edits);
@@ -125,8 +124,19 @@ async function add(): Promise<() => Promise<boolean>> {
   const { addFeatures } = await import('./features');
   const page = { session, stack, history, edits, away, maker, loader, opener, stage };
   const open = session.joinLate(() => addFeatures(page));
+  let inspect: Promise<void> | undefined;
+  onFace((shown) => {
+    if (shown === 'inspect') inspect ??= addInspect();
+  });
+  await inspect;
   document.documentElement.dataset.complete = ''; // for tests
   return open;
+}
+
+/** Adds what only Inspect has. */
+async function addInspect(): Promise<void> {
+  const inspect = await import('./panels/study/inspect');
+  session.joinLate(() => inspect.addInspect(session, stage));
 }
 
 /** Waits until the first model is judged, or somebody is about to use the page. */

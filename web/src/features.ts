@@ -1,6 +1,5 @@
 // What the first picture and its verdict do without.
 import type { Composite, Edits, History, LayerStack } from '#three';
-import { Explain } from './explain/explain-tool';
 import { FilmStrip } from './explain/film-strip';
 import { ExportPanel } from './export/export-panel';
 import { exportedPaint } from './export/linked-layers';
@@ -10,11 +9,9 @@ import { Strokes } from './export/strokes';
 import type { Opener } from './loading/opener';
 import { beginProjects } from './panels/begin-projects';
 import { offerGuide } from './panels/offer-guide';
-import { PartsTable } from './panels/parts-table';
 import { setUpSaving } from './panels/save-texture';
 import { setUpWardrobe } from './panels/set-up-wardrobe';
 import { recordControls } from './panels/steps';
-import { ThresholdMarks } from './panels/threshold-marks';
 import { keepOffline } from './platform/offline';
 import { flags } from './platform/shelf';
 import type { CageMaker } from './state/cage-maker';
@@ -51,14 +48,11 @@ export function addFeatures({ stage, ...page }: Begun): () => Promise<boolean> {
   const painting =
     stage && setUpPainting(session, stage.viewer, stage.tools, { stack, composite: stage.composite, edits });
   if (stage) {
-    new Explain(session, stage.viewer, stage.tools);
     new FilmStrip(session, stage.viewer);
     // Work that is brought back was seen before.
     if (!flags.get('work')) rollOnFirst(session, stage.viewer, stage.composite.texture);
     new ShareSheet(session, stage.viewer, { stack, paint: stage.composite.texture });
   }
-  new PartsTable(session, viewer?.stage);
-  new ThresholdMarks(session);
   const live = new Live(session, viewer);
   recordControls(session, live, history);
   const saved = stage && setUpSaving(stage.viewer, stage.composite);

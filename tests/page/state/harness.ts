@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { CagecastError, init, type ProjectOptions, project } from 'cagecast';
+import { CagecastError, init, type ProjectOptions, project, type Timings } from 'cagecast';
 import type { Cage } from 'cagecast/cages';
 import { BufferAttribute, BufferGeometry, Group, Mesh, Texture } from 'three';
 import { meshesOf } from '../../../web/src/loading/extract-mesh';
@@ -138,10 +138,11 @@ export class FakeLoader implements Loader {
 
 /** Transfers at once, or when its gate opens. The latest request wins. */
 export class FakeTransferer implements Transferer {
-  onRetimed?: NonNullable<Transferer['onRetimed']>;
   readonly gate = new Gate();
   /** The tasks that were asked for: with the preset, and the name of the target. */
   asked: string[] = [];
+  /** What is answered to those who want transfers timed. */
+  runs: Partial<Timings>[] = [{ total: 1 }];
   /** Fails by it once. */
   failure: Error | undefined;
   #reject: ((error: Error) => void) | undefined;
@@ -153,7 +154,7 @@ export class FakeTransferer implements Transferer {
     options: Tasks[Task]['options'],
   ): Promise<Tasks[Task]['answer']> {
     this.cancel();
-    const { preset = '' } = options as { preset?: string };
+    const { preset = '' } = ('rules' in options ? options.rules : options) as { preset?: string };
     this.asked.push(`${task} ${preset} ${target.name}`);
     return new Promise((resolve, reject) => {
       this.#reject = reject;
@@ -162,6 +163,7 @@ export class FakeTransferer implements Transferer {
         this.failure = undefined;
         if (failure) return reject(failure);
         if (task === 'inspect') return resolve({ verdict: 'good', findings: [] } as never);
+        if (task === 'time') return resolve({ runs: this.runs } as never);
         try {
           const arrays = arraysOf(cage, target);
           resolve({ ...project(arrays.cage, arrays.target, options as ProjectOptions), split: {} } as never);

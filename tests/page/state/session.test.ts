@@ -154,22 +154,6 @@ test('the threshold takes effect without a transfer, and a paint without a class
   assert.equal(page.transferer.asked.length, length);
 });
 
-test('another time is taken for the transfer that is shown, not while the next is under way', async () => {
-  const page = await begin();
-  const taken: number[] = [];
-  page.session.on('retimed', ({ timings: { total } }) => taken.push(total));
-  page.open('a.glb', 'cage.glb');
-  await page.ready();
-  const { projection } = page.session.shown!;
-  page.transferer.onRetimed?.({ ...projection.timings, total: 1 });
-  assert.deepEqual([taken, projection.timings.total], [[1], 1]);
-  page.transferer.gate.hold();
-  page.open('b.glb');
-  await quiet();
-  page.transferer.onRetimed?.({ ...projection.timings, total: 2 });
-  assert.deepEqual(taken, [1]);
-});
-
 test('a sample’s paint does not lie on the cage of another; it stays on one with the same UVs', async () => {
   const page = await begin();
   const sample = { name: 'one', title: 'One', target: '', cage: '', paints: [] };

@@ -16,6 +16,8 @@ const state: LinkState = {
   locks: { 0: 'exclude', 7: 'keep', 8: 'keep', 12: 'always', 13: 'out' },
   view: {
     mode: 'zones',
+    left: 'naive',
+    right: 'result',
     split: 0.5,
     step: 0,
     paint: false,
@@ -33,6 +35,10 @@ test('a link restores what it was written from', () => {
   const plain = { ...state, layers: undefined, shape: undefined, angle: undefined, locks: {}, view: kFirstView };
   assert.deepEqual(readLink(writeLink(plain)), plain);
   assert.deepEqual(readLink(writeLink({ ...plain, layers: [] }))!.layers, []);
+  const halves = { ...plain, view: { ...kFirstView, left: 'paper', right: 'rays' } as const };
+  assert.deepEqual(readLink(writeLink(halves)), halves);
+  assert.match(writeLink(halves), /&view=compare&split=0\.500&left=paper&right=rays$/);
+  assert.deepEqual(readLink('#sample=human&left=best&right=')!.view, kFirstView);
   const closer = { ...state, angle: { turn: 30, tilt: 80, near: 2, at: [0.25, -0.5, 0] as const } };
   assert.deepEqual(readLink(writeLink(closer)), closer);
   const { at: _, ...middle } = closer.angle;

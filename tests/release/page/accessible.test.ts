@@ -21,10 +21,12 @@ for (const { name, ...options } of kVisits) {
 
     await page.locator('details').evaluateAll((all) => all.forEach((details) => details.setAttribute('open', '')));
     await page.locator('#view-mode input[value=distance]').check({ force: true });
-    await page.getByRole('button', { name: 'Explain the centre' }).click();
+    await page.locator('#view').press('x');
+    await page.locator('#view').press('Enter');
     await page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '');
     assert.deepEqual(await faults(page), [], 'with all cards open, a legend, a story, and a verdict on the cage');
 
+    await page.locator('#view').press('Escape');
     await page.locator('#view-mode input[value=zones]').check({ force: true });
     await page.getByTestId('target-input').setInputFiles(glb('poem.glb', Buffer.from('no model')));
     assert.equal(await settled(page), 'error');
@@ -49,7 +51,6 @@ test('axe finds no problems with own files: morphs, an animation, layers, notes,
   ]);
   await ready(page);
   await page.getByTestId('add-painting').click();
-  await page.locator('#parts summary').click();
   await page.getByTestId('segment-table').locator('tbody select').first().selectOption('exclude');
   await page.getByTestId('amount').fill('0.5');
   await page.locator('#live[aria-busy=false]').waitFor();

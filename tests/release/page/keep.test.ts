@@ -79,7 +79,6 @@ async function work(page: Page): Promise<void> {
   await rows(page).filter({ hasText: 'stripes.png' }).waitFor();
   await rows(page).filter({ hasText: 'stripes.png' }).locator('[name=opacity]').fill('60');
   await stroke(page);
-  await page.locator('#parts summary').click();
   const part = (await shownParts(page))[0]!.name;
   await page.getByLabel(`Override for ${part}`, { exact: true }).selectOption('exclude');
   await page.getByTestId('threshold').fill('0.7');

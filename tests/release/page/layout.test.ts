@@ -81,7 +81,7 @@ test('the Tab key reaches every control, and each has a name', async () => {
   await openAll(visit, false);
   await page.evaluate(() => document.body.focus());
   const reached: string[] = [];
-  for (let presses = 0; presses < 80; presses++) {
+  for (let presses = 0; presses < 120; presses++) {
     await page.keyboard.press('Tab');
     const id = await page.evaluate(
       () =>
@@ -94,20 +94,21 @@ test('the Tab key reaches every control, and each has a name', async () => {
   }
   const expected = [
     'view',
+    'half-left',
+    'half-right',
     'divider',
     'view-mode',
     'show-paint',
     'show-cage',
+    'summary',
+    'preset',
+    'threshold',
     'sample-select',
     'target-input',
     'cage-input',
     'texture-input',
     'summary',
     'paint',
-    'preset',
-    'threshold',
-    'summary',
-    'summary',
     'summary',
   ];
   assert.deepEqual(
@@ -118,7 +119,7 @@ test('the Tab key reaches every control, and each has a name', async () => {
     ['slider', /Compare/],
     ['slider', /Threshold/],
     ['combobox', /Sample/],
-    ['combobox', /Rules/],
+    ['combobox', /Preset/],
     ['radio', /Result/],
     ['radio', /Zones/],
     ['checkbox', /Cage/],
@@ -152,7 +153,7 @@ test('on a phone the view stays visible while the panel scrolls', async () => {
 });
 
 test('a finger turns the model and moves the divider', async () => {
-  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }, kPlay);
   const area = await modelArea(page);
   const session = await page.context().newCDPSession(page);
   const swipe = async (x: number, y: number, by: number): Promise<void> => {
@@ -285,10 +286,17 @@ test('on the stage, nothing that can be pressed is covered or cut off', async ()
   await page.locator('#view').press(' ');
   await page.locator('.sticker-bar').waitFor();
   assert.deepEqual(await stageFaults(page, kPhoneSizes), [], 'with a sticker that is placed');
-  await page.getByRole('button', { name: 'Explain the centre' }).click();
-  await page.getByTestId('explain-bubble').waitFor();
-  assert.deepEqual(await stageFaults(page, kPhoneSizes), [], 'with an explanation');
-  await page.locator('#view').press('Escape');
+  await page.locator('#view').press('x');
+  await page.locator('#view').press('Enter');
+  const bubble = page.getByTestId('explain-bubble');
+  for (const [width, height] of kPhoneSizes) {
+    await page.setViewportSize({ width, height });
+    const [box, stage] = [(await bubble.boundingBox())!, (await page.locator('#stage').boundingBox())!];
+    assert.ok(box.x >= 0 && box.x + box.width <= width && box.y >= stage.y, 'it is seen whole');
+    assert.ok(box.y + box.height <= stage.y + stage.height && box.height < stage.height / 2, 'beside its spot');
+  }
+  await bubble.getByRole('button', { name: 'Close' }).click();
+  assert.ok(await bubble.isHidden());
   await drop(page, [head(), glb('cage.glb', asset('lizard', 'cage.glb'))]);
   await ready(page);
   await page.getByTestId('stage-remedy').waitFor();

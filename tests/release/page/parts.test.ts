@@ -8,7 +8,6 @@ import { drop, glb, openSite, ready, type ShownPart, shownCounts, shownParts } f
 
 const site = await openSite();
 const visit = await site.visit();
-await visit.page.locator('#parts summary').click();
 
 const table = (): Locator => visit.page.getByTestId('segment-table');
 /** The choice in a row, found by what a screen reader says. */
@@ -49,19 +48,26 @@ test('the hovered or focused part is highlighted', async () => {
   assert.ok(difference(before, await look(page, area)) < 0.0005);
 });
 
-test('a part focused when the card opens stays highlighted', async () => {
+test('the tree is searched by name and state, and its branches are closed and opened', async () => {
   const { page } = visit;
-  const area = await modelArea(page);
-  await page.locator('#parts').evaluate((card: HTMLDetailsElement) => (card.open = false));
-  const before = await look(page, area);
-  // The page is told of the opening after that.
-  await page.locator('#parts').evaluate((card: HTMLDetailsElement) => {
-    card.open = true;
-    card.querySelector('select')!.focus();
-  });
-  assert.ok(difference(before, await look(page, area)) > 0.002, 'lit');
-  await page.evaluate(() => (document.activeElement as HTMLElement).blur());
-  assert.ok(difference(before, await look(page, area)) < 0.0005, 'and dark again');
+  const seen = () => table().locator('tbody tr:not(.mesh) th').filter({ visible: true }).allTextContents();
+  const all = await seen();
+  await page.getByTestId('parts-search').fill('EYE');
+  assert.deepEqual(await seen(), ['l-eye', 'r-eye']);
+  await page.getByTestId('parts-state').selectOption('painted');
+  assert.deepEqual(await seen(), []);
+  await page.getByTestId('parts-search').fill('');
+  assert.deepEqual(await seen(), ['skin']);
+  await page.getByTestId('parts-state').selectOption('all');
+  const branch = table().getByRole('button', { name: 'lower-teeth' });
+  await branch.press('Enter');
+  assert.deepEqual(
+    await seen(),
+    all.filter((name) => !name.startsWith('lower-teeth')),
+  );
+  assert.equal(await branch.getAttribute('aria-expanded'), 'false');
+  await branch.press('Enter');
+  assert.deepEqual(await seen(), all);
 });
 
 test('the table follows a moving model', async () => {
@@ -115,7 +121,6 @@ test('on a phone a tapped row stays highlighted until something else is tapped',
   const { page } = await site.visit(phone);
   // What is said of the cage's fit comes later, and moves what is below it out from under a finger.
   await page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '');
-  await page.locator('#parts summary').tap();
   const area = await modelArea(page);
   const row = page.getByTestId('segment-table').getByRole('rowheader', { name: 'skin' }).first();
   await row.scrollIntoViewIfNeeded();

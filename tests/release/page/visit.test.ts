@@ -81,9 +81,9 @@ for (const { name, ...options } of kScreens) {
     assert.equal(await verdict(page), 'good');
     assert.match((await page.locator('#stage-verdict-text').textContent())!, /^\d+ % paintable/);
     assert.deepEqual(await page.locator('#section-nav a').allTextContents(), [
+      'NCZ',
       'Model',
       'Paint',
-      'Check',
       'Motion',
       'Share',
     ]);
@@ -121,7 +121,7 @@ for (const { name, ...options } of kScreens) {
     const [head, rail, bar] = [await box('#stage-share'), await box('#tools'), await box('.toolbar')];
     const seen = await seenModel(page);
     assert.ok(seen.bottom < bar.y, `it ends at ${seen.bottom}, the toolbar begins at ${bar.y}`);
-    assert.ok(seen.left > rail.x + rail.width, `it begins at ${seen.left}, the rail ends at ${rail.x + rail.width}`);
+    assert.ok(seen.left >= rail.x + rail.width, `it begins at ${seen.left}, the rail ends at ${rail.x + rail.width}`);
     if (name === 'phone')
       assert.ok(seen.top > head.y + head.height, `it begins at ${seen.top}, under ${head.y + head.height}`);
     assert.ok(
@@ -211,9 +211,9 @@ test('while one paints, colour, size, undo and redo are on the stage; a part tha
   assert.equal(await page.getByTestId('brush-size').inputValue(), '70');
   const area = { x: 140, y: 130, width: 170, height: 250 };
   const bare = await look(page, area);
-  await page.mouse.move(area.x + 0.5 * area.width, area.y + 0.5 * area.height);
+  await page.mouse.move(area.x + 0.4 * area.width, area.y + 0.3 * area.height);
   await page.mouse.down();
-  await page.mouse.move(area.x + 0.55 * area.width, area.y + 0.55 * area.height, { steps: 3 });
+  await page.mouse.move(area.x + 0.45 * area.width, area.y + 0.35 * area.height, { steps: 3 });
   await page.mouse.up();
   await page.mouse.move(5, 5);
   assert.ok(difference(bare, await look(page, area)) > 0.01, 'it is painted');
@@ -245,6 +245,5 @@ test('while one paints, colour, size, undo and redo are on the stage; a part tha
   // By the keyboard, the part at the centre; what is kept says why it stays bare.
   await page.locator('#view').press('Enter');
   await menu.getByRole('radio', { name: 'Keep', exact: true }).check({ force: true });
-  await page.locator('#parts summary').click();
   assert.match((await page.getByTestId('keep-note').textContent())!, /is kept: .* of .* points are painted/);
 });

@@ -15,9 +15,8 @@ const kStageSizes = [
 ] as const;
 
 const kStageControls =
-  ':is(.masthead, .stage-head, .quick, .angles, .clips, .sticker-bar) :is(button, input, select), :is(.rail, .toolbar) label, .knob';
-const kStageGroups =
-  '.masthead button, .stage-head > *, .rail, .quick, .angles, .clips, .toolbar, .bubble, .sticker-bar';
+  ':is(.masthead, .stage-head, .quick, .angles, .clips, .halves, .sticker-bar) :is(button, input, select), :is(.rail, .toolbar) label, .knob';
+const kStageGroups = '.masthead button, .stage-head > *, .rail, .quick, .angles, .clips, .toolbar, .sticker-bar';
 
 /** What can be pressed on the stage but is outside the window or covered, and groups of controls that overlap, at all sizes. */
 export async function stageFaults(
@@ -32,7 +31,7 @@ export async function stageFaults(
       ([controls, groups]) => {
         const faults: string[] = [];
         for (const control of document.querySelectorAll<HTMLElement>(controls)) {
-          if (!control.checkVisibility()) continue;
+          if (!control.checkVisibility({ visibilityProperty: true })) continue;
           const { left, right, top, bottom } = control.getBoundingClientRect();
           const name = control.id || control.textContent!.trim() || control.className;
           if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight) faults.push(`${name} is cut off`);

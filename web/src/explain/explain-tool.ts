@@ -1,6 +1,7 @@
 import { make, swatch } from '../platform/make';
 import { announce, element } from '../platform/page';
 import type { Session } from '../state/session';
+import { beside } from '../state/study/beside';
 import { kZones } from '../state/zones';
 import type { Spot } from '../view/pick';
 import type { RailTool, Tools } from '../view/tool-rail';
@@ -10,26 +11,23 @@ import { type Explanation, explain, percent, type SegmentFacts } from './explana
 import { ExplanationMarks } from './marks';
 
 /**
- * The tool that explains why a spot is painted or not: under the mouse, pinned by a click or tap, or at the centre of the view
- * with the Enter key. A pinned explanation follows changes of the rules.
+ * The tool that explains why a spot is painted or not, beside it: under the mouse, in full where one clicks or taps, or at the centre of
+ * the view with the Enter key. A pinned explanation follows the spot, and changes of the rules.
  */
 export class Explain {
   readonly #session: Session;
   readonly #viewer: Viewer;
-  readonly #tools: Tools;
   readonly #offer: RailTool;
-  readonly #panel = element('explain-text', HTMLElement);
   readonly #bubble = element('explain-bubble', HTMLElement);
   #loops: BoundaryLoops | undefined;
   #marks: ExplanationMarks | undefined;
   /** The explained spot, and whether it is pinned. */
-  #spot: Pick<Spot, 'triangle' | 'weights'> | undefined;
+  #spot: Spot | undefined;
   #pinned = false;
 
   constructor(session: Session, viewer: Viewer, tools: Tools) {
     this.#session = session;
     this.#viewer = viewer;
-    this.#tools = tools;
     this.#offer = {
       title: 'Explain',
       key: 'x',
@@ -48,7 +46,11 @@ export class Explain {
     });
     session.on('frame', () => (this.#loops = undefined)); // the cage may have moved too
     session.on('zones', () => this.#pinned && this.#explain(this.#spot));
-    element('explain-center', HTMLButtonElement).addEventListener('click', () => this.#explainCenter());
+    viewer.beforeDraw(() => this.#place());
+    element('explain-close', HTMLButtonElement).addEventListener('click', () => {
+      this.#clear();
+      element('view', HTMLCanvasElement).focus();
+    });
     element('view', HTMLCanvasElement).addEventListener('keydown', (event) => {
       if (event.key === 'Enter' && tools.chosen === this.#offer) this.#explainCenter();
     });
@@ -66,7 +68,6 @@ export class Explain {
   }
 
   #explainCenter(): void {
-    this.#tools.choose(this.#offer);
     const { x, y } = this.#viewer.screen.center;
     this.pin(this.#viewer.screen.pick(x, y));
   }
@@ -81,7 +82,7 @@ export class Explain {
     this.#explain(undefined);
   }
 
-  #explain(spot: Pick<Spot, 'triangle' | 'weights'> | undefined): Explanation | undefined {
+  #explain(spot: Spot | undefined): Explanation | undefined {
     const { shown, classification, rules, locks, bare } = this.#session;
     const hadMarks = this.#marks !== undefined;
     this.#marks?.dispose();
@@ -105,32 +106,50 @@ export class Explain {
   }
 
   #write(explanation: Explanation | undefined): void {
-    this.#bubble.hidden = this.#panel.hidden = explanation === undefined;
-    element('explain-hint', HTMLElement).hidden = explanation !== undefined;
+    this.#bubble.hidden = explanation === undefined;
     if (!explanation) return;
     const { zone, verdict, because, steps, part } = explanation;
-    this.#bubble.replaceChildren(swatch(kZones[zone]!.color), make('b', {}, verdict), make('span', {}, because));
-    const items = steps.map(({ title, sentence }) => make('li', {}, make('b', {}, title), make('p', {}, sentence)));
-    this.#panel.replaceChildren(
-      make('h3', {}, swatch(kZones[zone]!.color), verdict),
-      make('p', {}, `${because}.`),
-      make('ol', {}, ...items),
-      areasOf(part),
+    element('explain-brief', HTMLElement).replaceChildren(
+      swatch(kZones[zone]!.color),
+      make('b', {}, verdict),
+      ': ',
+      make('span', {}, because),
     );
+    // Under the mouse there is little room, and it goes on.
+    this.#bubble.classList.toggle('pinned', this.#pinned);
+    const items = steps.map(({ title, sentence }) => make('li', {}, make('b', {}, title), make('p', {}, sentence)));
+    element('explain-text', HTMLElement).replaceChildren(make('ol', {}, ...items), areasOf(part));
+    this.#place();
+  }
+
+  /** Puts the explanation beside the spot, wherever that is now. */
+  #place(): void {
+    if (!this.#spot || this.#bubble.hidden) return;
+    const { screen, controls } = this.#viewer;
+    const { left, top, width, height } = element('view', HTMLCanvasElement).getBoundingClientRect();
+    const seen = screen.project(this.#spot.point);
+    const { offsetWidth, offsetHeight } = this.#bubble;
+    const { x, y } = beside(
+      { x: seen.x - left, y: seen.y - top },
+      { width: offsetWidth, height: offsetHeight },
+      { width, height, top: controls.free.top, bottom: controls.free.bottom },
+    );
+    this.#bubble.style.translate = `${Math.round(x)}px ${Math.round(y)}px`;
   }
 }
 
 /** The areas of a part as a bar: exposed, covered, and the threshold. */
 function areasOf({ exposed, covered, coverage, threshold, score, passes }: SegmentFacts): HTMLElement {
-  const bar = make('div', { className: 'area-bar' }, make('i'), make('i'), make('i'));
+  const bar = make('div', { className: 'area-bar' });
   for (const [name, value] of Object.entries({ exposed, covered, threshold: threshold * exposed }))
     bar.style.setProperty(`--${name}`, String(value));
-  const facts = make('dl');
-  const fact = (name: string, value: string): void => facts.append(make('dt', {}, name), make('dd', {}, value));
+  const facts = make('table');
+  const fact = (name: string, value: string): void =>
+    facts.append(make('tr', {}, make('th', { scope: 'row' }, name), make('td', {}, value)));
   fact('E exposed', percent(exposed));
   fact('C covered', percent(covered));
   fact('F = C / E', `${percent(coverage)}, ${passes ? 'passes' : 'culled'}`);
   fact('Threshold', percent(threshold));
   if (Number.isFinite(score)) fact('Score (kept from 1)', score.toFixed(2));
-  return make('figure', { className: 'areas' }, bar, facts);
+  return make('figure', {}, bar, facts);
 }

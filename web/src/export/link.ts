@@ -3,7 +3,21 @@ import { maxLayers } from '#three';
 import { type Choice, kMaxWeld, type Locks, type Rules } from '../state/choices';
 import { type ChosenShape, kDeforms } from '../state/deform';
 import type { Angle } from '../state/view-state';
-import { kLastStep, kLightNames, kModes, type LightName, type Mode, type View } from '../state/view-state';
+import {
+  type Half,
+  kFirstView,
+  kHalves,
+  kLastStep,
+  kLightNames,
+  kModes,
+  type LightName,
+  type Mode,
+  type View,
+} from '../state/view-state';
+
+/** What a half shows. */
+const halfOf = (word: string | null, half: 'left' | 'right'): Half =>
+  kHalves.find((known) => known === word) ?? kFirstView[half];
 
 /** A link may name as many morphs, with weights up to so much, as projects. */
 const [kMaxMorphs, kMaxWeight] = [10_000, 1e6];
@@ -83,7 +97,10 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
     if (segments.length > 0) words.set(lock, segments.join(','));
   }
   words.set('view', view.mode);
-  if (view.mode === 'compare') words.set('split', view.split.toFixed(3));
+  if (view.mode === 'compare') {
+    words.set('split', view.split.toFixed(3));
+    for (const half of ['left', 'right'] as const) if (view[half] !== kFirstView[half]) words.set(half, view[half]);
+  }
   if (view.mode === 'steps') words.set('step', view.step.toFixed(2));
   if (!view.paint) words.set('paint', 'off');
   if (view.cage) words.set('cage', 'on');
@@ -140,6 +157,8 @@ export function readLink(fragment: string): LinkState | undefined {
     view: {
       mode: kModes.includes(mode) ? mode : 'compare',
       split: share(words.get('split'), 0.5),
+      left: halfOf(words.get('left'), 'left'),
+      right: halfOf(words.get('right'), 'right'),
       step: share(words.get('step'), 0, kLastStep),
       paint: words.get('paint') !== 'off',
       cage: words.get('cage') === 'on',

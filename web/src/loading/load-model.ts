@@ -27,6 +27,7 @@ export async function loadModel(
   signal?: AbortSignal,
 ): Promise<Model> {
   const urls = new Map<string, string>();
+  const begun = performance.now();
   try {
     // The page begins without what judges the files of others.
     const judge = isOwn ? undefined : await import('./given-file');
@@ -60,6 +61,7 @@ export async function loadModel(
         loaded: { scene, userData: loaded.userData, parser: { associations, json: { extensions: json.extensions } } },
         animations: loaded.animations,
         ...meshes,
+        spent: performance.now() - begun,
         ...(damage && { damage: `${file.name}: ${damage}` }),
       };
     } finally {

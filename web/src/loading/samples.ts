@@ -18,10 +18,11 @@ export async function loadSamples(): Promise<Sample[]> {
     throw new Error('The samples could not be loaded. You can still drop a model of your own.');
   }
   const address = (path: string): string => new URL(path, kFolder).href;
-  return list.map(({ target, cage, paints, ...rest }) => ({
+  return list.map(({ target, cage, truth, paints, ...rest }) => ({
     ...rest,
     target: address(target),
     cage: address(cage),
+    ...(truth && { truth: address(truth) }),
     paints: paints.map((paint) => ({ title: paint.title, file: address(paint.file) })),
   }));
 }
@@ -35,6 +36,10 @@ export function fetchAhead({ target, cage, paints }: Sample): void {
 
 const ask = (address: string, options: RequestInit = {}): Promise<Response | undefined> =>
   fetch(address, options).catch(() => undefined);
+
+/** The text of a sample's labels, if it has any and they come. */
+export const fetchLabels = async ({ truth }: Sample): Promise<string | undefined> =>
+  truth ? await (await fetchFile(truth).catch(() => undefined))?.text() : undefined;
 
 const pictures = new Map<string, string>();
 

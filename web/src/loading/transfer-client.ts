@@ -1,4 +1,4 @@
-import { CagecastError, type Timings } from 'cagecast';
+import { CagecastError } from 'cagecast';
 import { arraysOf } from '../state/arrays';
 import type { Model } from '../state/model';
 import { type Reply, type Request, Superseded, type Tasks, type Transferer } from '../state/transfers';
@@ -7,8 +7,6 @@ import { type Reply, type Request, Superseded, type Tasks, type Transferer } fro
  * Runs transfers in a worker, off the main thread. The latest request wins: it ends the one in progress at once.
  */
 export class TransferClient implements Transferer {
-  /** Called some time after a quick projection, with its timings once the browser has compiled the code. */
-  onRetimed?: (timings: Timings) => void;
   #worker: Worker | undefined = this.#start();
   #lastId = 0;
   #pending:
@@ -58,7 +56,6 @@ export class TransferClient implements Transferer {
   #start(): Worker {
     const worker = new Worker(new URL('./transfer-worker.ts', import.meta.url), { type: 'module' });
     worker.onmessage = ({ data }: MessageEvent<Reply>) => {
-      if ('retimed' in data) return data.id === this.#lastId ? this.onRetimed?.(data.retimed) : undefined;
       if (data.id !== this.#pending?.id) return;
       if ('projected' in data) return this.#pending.onProjected?.();
       if ('error' in data) return this.#fail(new CagecastError(...data.error));

@@ -52,6 +52,8 @@ export interface Model {
   mesh: ExtractedMesh;
   /** The same as a cage: its outer cages if there are any, else all, drawn or not. */
   cageMesh: ExtractedMesh;
+  /** How long it took to read, in milliseconds; absent for what was not read from a file. */
+  spent?: number;
   /** A message about images that cannot be shown; the model is usable all the same. */
   damage?: string;
   /** The sample it belongs to; undefined for the user's own files. */

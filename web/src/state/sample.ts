@@ -6,6 +6,8 @@ export interface Sample {
   test?: boolean;
   target: string;
   cage: string;
+  /** What must not be painted, if that is known. */
+  truth?: string;
   /** None if it is painted with those that are drawn for any cage. */
   paints: { title: string; file: string }[];
 }

@@ -1,12 +1,4 @@
-import {
-  CagecastError,
-  type Classification,
-  classify,
-  type Inspection,
-  init,
-  type Projection,
-  type Timings,
-} from 'cagecast';
+import { CagecastError, type Classification, classify, type Inspection, init, type Projection } from 'cagecast';
 import {
   BareMarks,
   bareGroupsOf,
@@ -62,8 +54,6 @@ interface SessionEvents {
   frame: SplitProjection;
   /** The zones were computed, after a transfer or a change of threshold or locks. `spent` is in milliseconds. */
   zones: { classification: Classification; spent: number };
-  /** The transfer was timed again, once the browser had compiled its code. */
-  retimed: { timings: Timings; spent: number };
   /** The cage that is shown was inspected. */
   inspected: Inspection;
   /** The paint changed; after `transfer` if both did. */
@@ -84,8 +74,6 @@ export class Session extends Replay<SessionEvents> {
   readonly #transferer: Transferer;
   readonly #requests = new Requests(() => this.#shown);
   #shown: Shown | undefined;
-  /** The transferer's latest projection. */
-  #projected: SplitProjection | undefined;
   #classification: Classification | undefined;
   #inspection: Inspection | undefined;
   #rules = kFirstRules;
@@ -104,7 +92,6 @@ export class Session extends Replay<SessionEvents> {
     super('transfer');
     this.checker = checker;
     this.#transferer = transferer;
-    transferer.onRetimed = (timings) => this.#setTimings(timings);
   }
 
   /** The current scene; undefined before the first transfer. */
@@ -408,7 +395,6 @@ export class Session extends Replay<SessionEvents> {
         ),
         init(),
       ]);
-      this.#projected = projection;
       return projection;
     } catch (error) {
       if (!(error instanceof CagecastError) || superseded()) throw error;
@@ -441,25 +427,12 @@ export class Session extends Replay<SessionEvents> {
 
   /** Computes the zones from the current threshold and locks. */
   #classify(): void {
-    const zones = this.#timedZones();
-    this.#classification = zones.classification;
-    this.emit('zones', zones);
-  }
-
-  #timedZones(): SessionEvents['zones'] {
     const started = performance.now();
     const classification = classify(this.#shown!.projection, {
       threshold: this.#rules.threshold,
       ...this.choices,
     });
-    return { classification, spent: performance.now() - started };
-  }
-
-  #setTimings(timings: Timings): void {
-    // Frames of a moving model are timed one by one.
-    if (this.#working || !this.#shown || this.#shown.projection !== this.#projected) return;
-    this.#shown.projection.timings = timings;
-    const { spent } = Array.from({ length: 9 }, () => this.#timedZones()).sort((a, b) => a.spent - b.spent)[4]!;
-    this.emit('retimed', { timings, spent });
+    this.#classification = classification;
+    this.emit('zones', { classification, spent: performance.now() - started });
   }
 }

@@ -35,11 +35,19 @@ interface CutOptions {
   rules: TransferOptions;
 }
 
+/** Options of transfers that are timed, and how many there are. */
+interface TimeOptions {
+  rules: TransferOptions;
+  runs: number;
+}
+
 /** Tasks of the worker, with their options and answers. */
 export interface Tasks {
   project: { options: ProjectOptions; answer: WorkerProjection };
   cut: { options: CutOptions; answer: CutTarget };
   inspect: { options: InspectOptions; answer: Inspection };
+  /** Times whole transfers, one after the other; two before them, in which the browser compiles, are not timed. */
+  time: { options: TimeOptions; answer: { runs: Timings[] } };
 }
 
 /** A message to the worker. */
@@ -48,19 +56,15 @@ export type Request = {
 }[keyof Tasks];
 
 /**
- * A message from the worker, with the id of the request. `projected` comes before seams are split. `retimed` comes some time
- * after a quick projection if no other request came: its timings once the browser has compiled the code.
+ * A message from the worker, with the id of the request. `projected` comes before seams are split.
  */
 export type Reply =
   | { id: number; projected: true }
   | { id: number; answer: Tasks[keyof Tasks]['answer'] }
-  | { id: number; error: ConstructorParameters<typeof CagecastError> }
-  | { id: number; retimed: Timings };
+  | { id: number; error: ConstructorParameters<typeof CagecastError> };
 
 /** Runs transfers. The page's own is `TransferClient`; tests hand in others. */
 export interface Transferer {
-  /** Called some time after a quick projection, with its timings once the browser has compiled the code. */
-  onRetimed?: (timings: Timings) => void;
   /**
    * Runs a task on a cage and a target. The latest request wins: it ends the one in progress at once.
    * @param onProjected Called when the projection is done and seams are being split.

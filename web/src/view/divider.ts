@@ -9,7 +9,7 @@ const kStep = 0.05;
 export function setUpDivider(onMove: (split: number) => void): { show(visible: boolean, split: number): void } {
   const divider = element('divider', HTMLElement);
   const stage = divider.parentElement!;
-  const labels = [element('side-left', HTMLElement), element('side-right', HTMLElement)];
+  const [left, right] = ['.side-left', '.side-right'].map((side) => [...stage.querySelectorAll<HTMLElement>(side)]);
   let split = 0.5;
 
   function moveTo(place: number): void {
@@ -22,9 +22,9 @@ export function setUpDivider(onMove: (split: number) => void): { show(visible: b
     divider.style.left = `${100 * split}%`;
     const percent = Math.round(100 * split);
     divider.ariaValueNow = String(percent);
-    divider.ariaValueText = `${percent} % naive, ${100 - percent} % Cagecast`;
-    labels[0]!.classList.toggle('gone', split < 0.12);
-    labels[1]!.classList.toggle('gone', split > 0.88);
+    divider.ariaValueText = `${percent} % left, ${100 - percent} % right`;
+    for (const label of left!) label.classList.toggle('gone', split < 0.12);
+    for (const label of right!) label.classList.toggle('gone', split > 0.88);
   }
 
   divider.addEventListener('pointerdown', (event) => {
@@ -58,7 +58,7 @@ export function setUpDivider(onMove: (split: number) => void): { show(visible: b
   return {
     show(visible, split) {
       put(split);
-      for (const part of [divider, ...labels]) part.hidden = !visible;
+      for (const part of [divider, ...left!, ...right!]) part.hidden = !visible;
     },
   };
 }

@@ -48,7 +48,7 @@ export function coveredBy(view: Place, controls: readonly Place[]): Pick<FreePar
   const height = view.bottom - view.top;
   const covered = { top: 0, bottom: 0 };
   for (const { left, right, top, bottom } of controls) {
-    if (right - left < bottom - top) continue;
+    if (right - left < bottom - top || bottom === top) continue;
     const edge = top + bottom < view.top + view.bottom ? 'top' : 'bottom';
     const reach = edge === 'top' ? bottom - view.top : view.bottom - top;
     covered[edge] = Math.max(covered[edge], Math.min(reach + kGap, kMost * height));

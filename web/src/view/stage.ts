@@ -12,6 +12,7 @@ import {
 } from 'three';
 import { disposeModel } from '../loading/load-model';
 import type { Model } from '../state/model';
+import type { Decision } from '../state/study/baselines';
 import type { SplitProjection } from '../state/transfers';
 import { CageLines } from './cage-lines';
 import { type Crowd, frontOf } from './framing';
@@ -117,6 +118,12 @@ export class Stage {
   /** Shows the cut target until it moves or is replaced; undefined shows its own triangles. */
   async setCut(cut: CutTarget | undefined): Promise<void> {
     await this.#overlay?.setCut(cut);
+    this.#redraw();
+  }
+
+  /** Sets what a half of the view paints, until another target or projection is shown; undefined: nothing. */
+  setHalf(half: 'left' | 'right', decision: Decision | undefined): void {
+    this.#overlay?.setHalf(half, decision);
     this.#redraw();
   }
 

@@ -22,7 +22,13 @@ export function setUpViewControls(session: Session): void {
   const isOfPlay = (): boolean => kPlayModes.includes(session.view.mode);
   onFace((shown) => {
     if (shown === 'play')
-      session.setView({ mode: isOfPlay() ? session.view.mode : 'result', paint: true, cage: false });
+      session.setView({
+        mode: isOfPlay() ? session.view.mode : 'result',
+        paint: true,
+        cage: false,
+        left: 'naive',
+        right: 'result',
+      });
   });
   session.on('view', (view) => {
     // Such as by a link: it is shown with the controls that belong to it.

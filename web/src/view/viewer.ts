@@ -48,7 +48,9 @@ export class Viewer {
   /** @throws Error where the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
-    this.#strips = [...canvas.parentElement!.querySelectorAll<HTMLElement>('.stage-head, .dock, .rail, .toolbar')];
+    this.#strips = [
+      ...canvas.parentElement!.querySelectorAll<HTMLElement>('.stage-head, .halves, .dock, .rail, .toolbar'),
+    ];
     this.#bar = canvas.parentElement!.querySelector<HTMLElement>('.wardrobe-bar')!;
     this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true });
     // Checking for errors waits for each shader to compile: seconds, on a slow machine.

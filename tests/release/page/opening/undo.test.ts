@@ -36,7 +36,6 @@ async function work({ page }: Visit): Promise<void> {
   await drop(page, [image('stripes.png', 64, (x) => [4 * x, 20, 200, 255])]);
   await rows(page).filter({ hasText: 'stripes.png' }).waitFor();
   const [part] = await shownParts(page);
-  await page.locator('#parts summary').click();
   await page.getByLabel(`Override for ${part!.name}`, { exact: true }).selectOption('exclude');
   await page.getByTestId('threshold').fill('0.7');
   await page.getByTestId('amount').fill('0.4');

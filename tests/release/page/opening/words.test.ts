@@ -17,7 +17,7 @@ async function words(page: Page): Promise<string[]> {
     )
     .evaluateAll((all) =>
       all
-        .filter((one) => one.checkVisibility() && !['ask', 'summary', 'time-first'].includes(one.id))
+        .filter((one) => one.checkVisibility() && !['ask', 'summary', 'time-note'].includes(one.id))
         .map((one) => `${one.id || one.className}: ${one.textContent}`),
     );
 }

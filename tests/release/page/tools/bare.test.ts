@@ -90,7 +90,7 @@ test('marked spots stay bare, and the made cage has a hole there; marks are eras
   await followed(page);
   await page.locator('#tools input[data-key=x]').check({ force: true });
   await page.mouse.click(x, y - 60);
-  assert.match((await page.getByTestId('explain-text').textContent())!, /^Not painted: marked/);
+  assert.match((await page.locator('#explain-brief').textContent())!, /^Not painted: marked/);
 
   await kept(page);
   const before = await shownCounts(page);

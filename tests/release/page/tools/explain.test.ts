@@ -56,7 +56,6 @@ test('the explanation follows the mouse, is pinned by a click, follows the thres
 
 /** Asks about the eye: its row in the table lights it up, and tells where it is. */
 async function findEye(page: Page, area: Area): Promise<{ x: number; y: number }> {
-  await page.locator('#parts summary').click();
   const row = page.getByTestId('segment-table').getByRole('combobox', { name: 'Override for l-eye', exact: true });
   await row.focus();
   const lit = await look(page, area);

@@ -25,7 +25,6 @@ test('a link restores sample, paint, rules, locks, view and camera, in this visi
   await page.getByTestId('preset').selectOption('paper');
   await settled(page);
   await setThreshold(page, 0.35);
-  await page.locator('#parts summary').click();
   await page.getByTestId('segment-table').locator('tbody tr select').last().selectOption('exclude');
   await page.locator('input[value=result]').check({ force: true });
   await page.locator('#show-cage').check({ force: true });

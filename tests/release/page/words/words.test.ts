@@ -62,7 +62,8 @@ async function inspect(page: Page): Promise<void> {
   await openAll(page);
   for (const mode of ['zones', 'segments', 'distance', 'stretch', 'checker'])
     await page.locator(`#view-mode input[value=${mode}]`).check({ force: true });
-  await page.locator('#explain-center').click();
+  await page.locator('#view').press('x');
+  await page.locator('#view').press('Enter');
   await page.locator('#explain-bubble:not([hidden])').waitFor();
   await page.locator('#exact-borders').check({ force: true });
   await ready(page);
@@ -119,7 +120,8 @@ for (const language of kLanguages)
     await page.locator('#face').click();
     await openAll(page);
     await page.locator('#view-mode input[value=zones]').check({ force: true });
-    await page.locator('#explain-center').click();
+    await page.locator('#view').press('x');
+    await page.locator('#view').press('Enter');
     await page.locator('#explain-bubble:not([hidden])').waitFor();
     await page.locator('#target-input').setInputFiles(glb('poem.glb', Buffer.from('no model')));
     assert.equal(await settled(page), 'error');

@@ -1,7 +1,7 @@
 import { kMaxWeld, knownLocks } from '../choices';
 import { type ChosenShape, type Deform, kDeforms } from '../deform';
 import type { Session } from '../session';
-import { type Angle, kLastStep, kLightNames, kModes } from '../view-state';
+import { type Angle, kHalves, kLastStep, kLightNames, kModes } from '../view-state';
 import { listOf, locksOf, numberOf, objectOf, oneOf, textOf } from './checks';
 import type { Contribution } from './project';
 
@@ -88,7 +88,10 @@ export function viewPart(session: Session, controls: Camera | undefined): Contri
     follow: (touch) => controls?.onMove(touch),
     save: () => ({ ...session.view, angle: controls?.angle }),
     read(saved) {
-      const { mode, split, step, paint, cage, seeThrough, light, background, angle } = objectOf(saved, 'view');
+      const { mode, split, left, right, step, paint, cage, seeThrough, light, background, angle } = objectOf(
+        saved,
+        'view',
+      );
       const { turn, tilt, near, at } = (angle ?? {}) as Record<string, unknown>;
       const look = (): void => {
         if (angle)
@@ -106,6 +109,8 @@ export function viewPart(session: Session, controls: Camera | undefined): Contri
           session.setView({
             mode: oneOf(mode, kModes),
             split: numberOf(split, 0, 1, 0.5),
+            left: oneOf(left, kHalves),
+            right: oneOf(right, [...kHalves].reverse()),
             step: numberOf(step, 0, kLastStep, 0),
             paint: paint !== false,
             cage: cage === true,

@@ -2,6 +2,7 @@ import type { Classification, CutTarget } from 'cagecast';
 import type { Texture } from 'three';
 import type { ExtractedMesh } from '../../state/model';
 import { Pace } from '../../state/pace';
+import type { Decision } from '../../state/study/baselines';
 import type { SplitProjection } from '../../state/transfers';
 import { kCasts } from '../contact-shadow';
 import { Highlight } from './highlight';
@@ -67,6 +68,11 @@ export class Overlay {
       primitive.setCut(cut);
       await pace.rest();
     }
+  }
+
+  /** Sets what the look of a half paints; undefined: nothing. */
+  setHalf(half: 'left' | 'right', decision: Decision | undefined): void {
+    for (const primitive of this.#primitives) primitive.setHalf(half, decision);
   }
 
   setPaint(paint: Texture): void {

@@ -14,6 +14,7 @@ import { cutGeometry } from '#three';
 import { reverseWinding } from '../../loading/extract-mesh';
 import { disposeAfterFrame } from '../../platform/programs';
 import type { Primitive } from '../../state/model';
+import type { Decision } from '../../state/study/baselines';
 import { kZones } from '../../state/zones';
 import {
   copyVertices,
@@ -50,6 +51,8 @@ export class PrimitiveOverlay {
   /** Replaces the filtered mesh while the target is cut. */
   #cut: Mesh | undefined;
   #colored: Mesh | undefined;
+  /** What other ways to transfer paint. */
+  readonly #halves: { left?: Mesh | undefined; right?: Mesh | undefined } = {};
   #look: Look = 'bare';
   readonly #paint: MeshStandardMaterial;
   readonly #nothing = new MeshBasicMaterial({ visible: false });
@@ -73,27 +76,56 @@ export class PrimitiveOverlay {
 
   /** Rebuilds the geometries. Materials are kept, as compiling a shader takes longer than a frame. */
   setProjection(uvs: Float32Array, split: SplitVertices): void {
-    const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = this.#primitive;
-    const [from, to] = [3 * firstTriangle, 3 * (firstTriangle + triangleCount)];
-    // Split vertices are in order of use: those of a primitive are contiguous.
-    const first = split.indices[from]!;
-    this.#corners = shifted(split.indices.subarray(from, to), first);
-    let count = 0;
-    for (const vertex of this.#corners) count = Math.max(count, vertex + 1);
-    const sources = shifted(split.sources.subarray(first, first + count), firstVertex);
-    // The overlay is a child of the mesh: the renderer reverses mirrored windings itself.
-    if (mirrored) reverseWinding(this.#corners);
-
+    const { mesh, firstVertex, vertexCount } = this.#primitive;
+    const { geometry: filtered, corners } = this.#splitAt(split);
+    this.#corners = corners;
     const naive = shareVertices(mesh.geometry);
     naive.setAttribute(kUvName, new BufferAttribute(uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount)), 2));
     detachShared(naive, mesh.geometry);
-    const filtered = copyVertices(mesh.geometry, sources);
-    filtered.setAttribute(kUvName, new BufferAttribute(split.uvs.slice(2 * first, 2 * (first + count)), 2));
-    filtered.setIndex(new BufferAttribute(new Uint32Array(3 * triangleCount), 1));
+    filtered.setIndex(new BufferAttribute(new Uint32Array(corners.length), 1));
     this.#replaceGeometry(this.#naive, naive);
     this.#replaceGeometry(this.#filtered, filtered);
     this.clearCut();
     this.#clearColored();
+  }
+
+  /** A copy of the mesh, split at the seams of the texture, and the vertices of its corners. */
+  #splitAt(split: SplitVertices): { geometry: BufferGeometry; corners: Uint32Array<ArrayBuffer> } {
+    const { mesh, firstVertex, firstTriangle, triangleCount, mirrored } = this.#primitive;
+    const [from, to] = [3 * firstTriangle, 3 * (firstTriangle + triangleCount)];
+    // Split vertices are in order of use: those of a primitive are contiguous.
+    const first = split.indices[from]!;
+    const corners = shifted(split.indices.subarray(from, to), first);
+    let count = 0;
+    for (const vertex of corners) count = Math.max(count, vertex + 1);
+    const geometry = copyVertices(mesh.geometry, shifted(split.sources.subarray(first, first + count), firstVertex));
+    geometry.setAttribute(kUvName, new BufferAttribute(split.uvs.slice(2 * first, 2 * (first + count)), 2));
+    // The overlay is a child of the mesh: the renderer reverses mirrored windings itself.
+    if (mirrored) reverseWinding(corners);
+    return { geometry, corners };
+  }
+
+  /** Sets what the look of a half paints; undefined: nothing. */
+  setHalf(half: 'left' | 'right', decision: Decision | undefined): void {
+    this.#halves[half]?.removeFromParent();
+    this.#halves[half]?.geometry.dispose();
+    this.#halves[half] = undefined;
+    if (!decision) return;
+    const { mesh, firstTriangle } = this.#primitive;
+    const { geometry, corners } = this.#splitAt(decision.split);
+    const isPainted = (corner: number): boolean =>
+      decision.cosmeticTriangles[firstTriangle + Math.floor(corner / 3)] === 1;
+    geometry.setIndex(
+      new BufferAttribute(
+        corners.filter((_, corner) => isPainted(corner)),
+        1,
+      ),
+    );
+    const shown = overlayMesh(mesh, geometry);
+    shown.material = this.#paint;
+    shown.visible = this.#look === half;
+    mesh.add(shown);
+    this.#halves[half] = shown;
   }
 
   /** Shows the filtered paint on the cut target. */
@@ -175,6 +207,7 @@ export class PrimitiveOverlay {
     this.#look = look;
     this.#naive.visible = look === 'naive';
     if (this.#colored) this.#colored.visible = look === 'colors';
+    for (const half of ['left', 'right'] as const) if (this.#halves[half]) this.#halves[half].visible = look === half;
     const materials = this.#materials(look);
     this.#filtered.visible = false;
     const filtered = this.#cut ?? this.#filtered;
@@ -201,6 +234,7 @@ export class PrimitiveOverlay {
   dispose(): void {
     this.clearCut();
     this.#clearColored();
+    for (const half of ['left', 'right'] as const) this.setHalf(half, undefined);
     for (const mesh of [this.#naive, this.#filtered]) {
       mesh.removeFromParent();
       mesh.geometry.dispose();

@@ -8,7 +8,12 @@ const kName = 0.2; // of the height of the highest: the room for a name below it
 const kRows = 0.8; // of the size that more rows would give, fewer are taken
 
 /** What of a look there is for models that are not on the stage. */
-const kShown: Partial<Record<Look, Look>> = { colors: 'result', checker: 'result' };
+const kShown: Partial<Record<Look, Look>> = {
+  colors: 'result',
+  checker: 'result',
+  left: 'result',
+  right: 'result',
+};
 
 /**
  * Arranges models side by side across the view, in as few rows as keep them large. They turn where they stand when the camera

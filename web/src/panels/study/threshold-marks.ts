@@ -1,9 +1,9 @@
 import { classify } from 'cagecast';
-import { make } from '../platform/make';
-import { element } from '../platform/page';
-import { Pace } from '../state/pace';
-import type { Session } from '../state/session';
-import { nameOfPart } from './part-menu';
+import { make } from '../../platform/make';
+import { element } from '../../platform/page';
+import { Pace } from '../../state/pace';
+import type { Session } from '../../state/session';
+import { nameOfPart } from '../part-menu';
 
 const kSeekDelay = 500; // milliseconds without a change
 const kSteps = 100; // of the slider
@@ -53,11 +53,7 @@ export class ThresholdMarks {
   }
 
   #write(flips: ReadonlyMap<number, ReadonlySet<string>>): void {
-    const marks = [...flips].map(([step, names]) => {
-      const mark = make('i', { title: [...names].join(', ') });
-      mark.style.left = `${(100 * step) / kSteps}%`;
-      return mark;
-    });
+    const marks = [...flips.keys()].map((step) => make('option', { value: String(step / kSteps) }));
     element('threshold-marks', HTMLElement).replaceChildren(...marks);
     const listed = [...flips]
       .slice(0, kMaxNamed)
