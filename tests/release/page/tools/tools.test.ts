@@ -96,7 +96,7 @@ test('a sticker is seen before it is placed, and is moved, turned, scaled, mirro
   assert.deepEqual(await faults(page), []);
   const first = await bareLook(page, area);
 
-  await drag(page, area, [0.43, 0.5], [0.47, 0.49], [0.51, 0.48]);
+  await drag(page, area, [0.43, 0.5], [0.47, 0.5], [0.51, 0.5]);
   await away(page);
   const moved = await green(page, area);
   assert.ok(moved.x - placed.x > 0.06, `moved by ${moved.x - placed.x}`);
@@ -261,7 +261,7 @@ test('where no paint is seen, nobody paints: the pointer turns the model again, 
 
 test('a sticker is duplicated beside itself, and copied to the other side, where it can be read, too', async () => {
   const { page, complaints } = await site.visit(
-    { viewport: { width: 1440, height: 900 }, deviceScaleFactor: 0.5 },
+    { viewport: { width: 1200, height: 900 }, deviceScaleFactor: 0.5 },
     undefined,
     '#sample=human&view=result',
   );
