@@ -11,9 +11,8 @@ import {
   type WebGLRenderer,
   WebGLRenderTarget,
 } from 'three';
+import { kCasts } from './overlay/overlay';
 
-/** The layer of what casts contact shadows. */
-export const kCasts = 1;
 const kTexels = 256; // per side
 const kHigh = 0.3; // above the floor: what is higher casts none
 const kBlur = 0.05; // of the floor's side

@@ -4,11 +4,12 @@ import type { ExtractedMesh } from '../../state/model';
 import { Pace } from '../../state/pace';
 import type { Decision } from '../../state/study/baselines';
 import type { SplitProjection } from '../../state/transfers';
-import { kCasts } from '../contact-shadow';
 import { Highlight } from './highlight';
 import type { Highlighted, Look } from './looks';
 import { PrimitiveOverlay } from './primitive-overlay';
 
+/** The layer of what casts contact shadows. */
+export const kCasts = 1;
 /** A layer that no camera draws and no ray meets. */
 const kNoLayer = 31;
 
