@@ -357,6 +357,7 @@ describe('saved layers that anybody may have written', () => {
       [{ visible: 1 }, /\[1\]\.visible is 1, not true or false/],
       [{ offset: [0] }, /\[1\]\.offset is .*, not two finite numbers \[u, v\]/],
       [{ scale: 0 }, /\[1\]\.scale is 0, not a number from 0.001 to 1000/],
+      [{ scale: '2' }, /\[1\]\.scale is "2", not a number/],
       [{ rotation: '1' }, /\[1\]\.rotation is "1", not a finite number of radians/],
       [{ painting: 4096 }, /\[1\]\.painting is 4096, not 1024 or 2048/],
       [{ name: 7 }, /\[1\]\.name is 7, not a name/],

@@ -38,6 +38,7 @@ interface Look {
   from?: number;
   share?: number;
   mode?: 'BLEND' | 'MASK' | 'OPAQUE';
+  cutoff?: number;
   factor?: number;
   clamped?: boolean;
 }
@@ -46,12 +47,12 @@ const laid = ({ from = 0.55, share = 0.4 }: Look): Float32Array =>
   veil.uvs.map((x, i) => (i % 2 === 0 ? from + share * x : 0.1 + 0.8 * x));
 
 function make(maker: GlbMaker, look: Look): void {
-  const { alpha = 0, mode = 'BLEND', factor = 1, clamped = false } = look;
+  const { alpha = 0, mode = 'BLEND', cutoff = 0.5, factor = 1, clamped = false } = look;
   maker.json.images = [{ bufferView: maker.view(pngOf(halves(alpha))), mimeType: 'image/png' }];
   maker.json.samplers = [clamped ? { wrapS: 33071, wrapT: 33071 } : {}];
   maker.json.textures = [{ source: 0, sampler: 0 }];
   maker.json.materials = [
-    { alphaMode: mode, pbrMetallicRoughness: { baseColorTexture: { index: 0 }, baseColorFactor: [1, 1, 1, factor] } },
+    { alphaMode: mode, ...(mode === 'MASK' && { alphaCutoff: cutoff }), pbrMetallicRoughness: { baseColorTexture: { index: 0 }, baseColorFactor: [1, 1, 1, factor] } },
   ];
   const { positions, indices } = target;
   maker.node({ name: 'head', mesh: maker.mesh({ positions, indices }) });
@@ -66,6 +67,7 @@ const kLooks: [Look, boolean][] = [
   [{ mode: 'MASK', alpha: 120 }, true],
   [{ mode: 'MASK', alpha: 200 }, false],
   [{ mode: 'MASK', alpha: 200, factor: 0.5 }, true],
+  [{ mode: 'MASK', cutoff: 0 }, false],
   [{ mode: 'OPAQUE' }, false],
   [{ from: 0.3 }, false],
   [{ from: 0.05 }, false],
@@ -115,11 +117,11 @@ test('so does three.js', () => {
     return new Mesh(geometry, material);
   };
   for (const [look, isClear] of kLooks) {
-    const { alpha = 0, mode = 'BLEND', factor = 1, clamped = false } = look;
+    const { alpha = 0, mode = 'BLEND', cutoff = 0.5, factor = 1, clamped = false } = look;
     const { width, height, data } = halves(alpha);
     const map = new DataTexture(data, width, height);
     if (!clamped) Object.assign(map, { wrapS: RepeatWrapping, wrapT: RepeatWrapping });
-    const alphaTest = mode === 'MASK' ? 0.5 : 0;
+    const alphaTest = mode === 'MASK' ? cutoff : 0;
     const material = new MeshBasicMaterial({ map, opacity: factor, transparent: mode === 'BLEND', alphaTest });
     const head = meshOf(target as typeof veil, new Float32Array((2 * target.positions.length) / 3));
     const root = new Group().add(head, meshOf(veil, laid(look), material));

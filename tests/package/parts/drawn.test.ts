@@ -69,6 +69,9 @@ test('collision shapes are left out by their names, colours are not', () => {
     left('Body', 'Skin_col', 'col_Skin', 'Skin-col', ...words, 'joint-1', 'Helper', 'ColliderScope_lens'),
     [],
   );
+  const began = process.cpuUsage();
+  left('Body', `col_${'1'.repeat(200_000)}x`);
+  assert.ok(process.cpuUsage(began).user < 2e6, 'in time that grows with the name');
   // Materials of a model, and of another part, that have its colours.
   assert.deepEqual(left(['Body', 'Body_col'], ['Body_col', 'Body'], ['Hair', 'Body_col']), []);
 });

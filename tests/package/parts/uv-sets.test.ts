@@ -208,6 +208,8 @@ describe('in code', () => {
       code: 'badOption',
       message: /options\.cageUvs is 0\.5, not the number/,
     });
+    const { code, message } = await paintGlb(glbOf(target), { template: 'car', cageUvs: 1, texture }).catch((e) => e);
+    assert.deepEqual([code, message.includes('options.cageUvs is for a cage that is a file')], ['badOption', true]);
   });
 
   test('so has cagecast, for documents', async () => {

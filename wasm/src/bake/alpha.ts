@@ -10,10 +10,10 @@ const kSeen = 1 / 64;
 
 /**
  * The least alpha of a texel, 0 to 255, that is seen.
- * @param cutoff  Of a material that cuts out; 0 if it blends.
+ * @param cutoff  Of a material that cuts out; undefined if it blends.
  * @param factor  By which the alpha of the texture is multiplied.
  */
-export const leastSeen = (cutoff: number, factor: number): number => (255 * Math.max(cutoff, kSeen)) / factor;
+export const leastSeen = (cutoff: number | undefined, factor: number): number => (255 * (cutoff ?? kSeen)) / factor;
 
 /** Whether nothing of an image counts where a triangle lies. @param uvs  2 per vertex. */
 export type IsFree = (uvs: ArrayLike<number>, a: number, b: number, c: number) => boolean;

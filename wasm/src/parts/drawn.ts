@@ -55,8 +55,11 @@ const kTechnical = [
   /[ ._$-](collision|collider|hit[ _-]?box)(e?s)?[ ._-]?(mesh|box|shape|hull|geo|proxy)?([._]?\d+)?$/i,
   /[a-z\d](Collision|Collider|Hit_?[Bb]ox)(e?s)?(Mesh|Box|Shape|Hull|Geo|Proxy)?([._]?\d+)?$/,
 ];
-/** The node of a collision shape, by the name of its model; in names of materials `col` stands for a colour. */
-const kShapeOf = /^(.+)[_-](conv)?col([._]?\d+)?$|^(conv)?col[_-](.+?)([._]?\d+)?$/i;
+/** The node of a collision shape, by the name of its model before or after it; in names of materials `col` stands for a colour. */
+const kShapeAfter = /^(.+)[_-](conv)?col([._]?\d+)?$/i;
+const kShapeBefore = /^(?:conv)?col[_-](.+)$/i;
+/** What programs add to a name that is there. */
+const kNumber = /[._]?\d{1,9}$/;
 /** A cube at a joint of MakeHuman's mesh, beside its helpers. */
 const kJoint = /^joint-/;
 const kHelper = /^helper-/;
@@ -184,9 +187,9 @@ function whyNotDrawn(looks: readonly Look[]): (LeftOut['why'] | undefined)[] {
   const hasHelpers = [...all].some((name) => name !== undefined && kHelper.test(name));
   const isTechnical = (names: Look['names']): boolean => {
     const [node = ''] = names;
-    const [, before, , , , after] = kShapeOf.exec(node) ?? [];
-    const model = before ?? after;
-    const isShape = model !== undefined && all.has(model) && !names.includes(model);
+    const after = kShapeBefore.exec(node)?.[1];
+    const models = [kShapeAfter.exec(node)?.[1], after, after?.replace(kNumber, '')];
+    const isShape = models.some((model) => model !== undefined && all.has(model) && !names.includes(model));
     const isOne = (name: string) => kTechnical.some((some) => some.test(name)) || (hasHelpers && kJoint.test(name));
     return isShape || names.some((name) => name !== undefined && isOne(name));
   };

@@ -22,6 +22,7 @@ export async function clearPrimitives(
     const file = await source.imageOf(texture);
     return file && mayBeClear(file.bytes, file.mimeType) ? decode(file.bytes, file.mimeType) : undefined;
   });
+  const grids = new Map<string, IsFree | undefined>();
   for (const primitive of meshes.flatMap((mesh) => mesh.primitives)) {
     const material = materials[primitive.material ?? -1];
     const {
@@ -31,18 +32,12 @@ export async function clearPrimitives(
     } = material ?? {};
     if (mode === 'OPAQUE' || !info || !textures[info.index] || !hasTriangles(primitive.mode ?? 4)) continue;
     try {
-      const image = await imageOf(info.index);
-      const least = leastSeen(mode === 'MASK' ? alphaCutoff : 0, baseColorFactor?.[3] ?? 1);
-      if (
-        image &&
-        isFreeOf(
-          source,
-          primitive,
-          info,
-          freeOf(image, (alpha) => alpha >= least, false),
-        )
-      )
-        found.add(primitive);
+      const least = leastSeen(mode === 'MASK' ? alphaCutoff : undefined, baseColorFactor?.[3] ?? 1);
+      const key = `${info.index} ${least}`;
+      const image = grids.has(key) ? undefined : await imageOf(info.index);
+      if (!grids.has(key)) grids.set(key, image && freeOf(image, (alpha) => alpha >= least, false));
+      const isFree = grids.get(key);
+      if (isFree && isFreeOf(source, primitive, info, isFree)) found.add(primitive);
     } catch {
       // What is wrong with it is said where it is read for itself.
     }

@@ -272,7 +272,9 @@ function cover(below: Float64Array, value: number, alpha: number): void {
 
 /** Makes a unit vector of a texel of a normal map: to where u and v grow, and up. */
 function lean(texel: Float64Array, { normalScale: scale, rotation }: Drawn): void {
-  // At the border of a layer that lies elsewhere.
+  // Beside a layer that lies elsewhere: straight up.
+  if (texel.every((value) => value === 0)) return;
+  // At its border.
   const whole = texel[3]! || 1;
   for (let k = 0; k < 3; ++k) texel[k]! /= whole;
   const x = 2 * texel[0]! - 1;

@@ -44,7 +44,10 @@ export async function decodePng(png: Uint8Array, mimeType: string): Promise<Imag
   const view = new DataView(png.buffer, png.byteOffset, png.byteLength);
   for (let at = 8; at + 12 <= png.length; at += 12 + view.getUint32(at)) {
     const name = String.fromCharCode(...png.subarray(at + 4, at + 8));
-    chunks.set(name, [...(chunks.get(name) ?? []), png.subarray(at + 8, at + 8 + view.getUint32(at))]);
+    const chunk = png.subarray(at + 8, at + 8 + view.getUint32(at));
+    const before = chunks.get(name);
+    if (before) before.push(chunk);
+    else chunks.set(name, [chunk]);
   }
   const row = channels * width;
   const packed = joinBytes(chunks.get('IDAT') ?? []);

@@ -84,7 +84,12 @@ function checkPlace(style: Place): void {
     check(fits, name, value, 'two finite numbers [u, v]');
   }
   const { scale, rotation } = style;
-  check(scale >= kMinScale && scale <= 1 / kMinScale, 'scale', scale, `a number from ${kMinScale} to ${1 / kMinScale}`);
+  check(
+    typeof scale === 'number' && scale >= kMinScale && scale <= 1 / kMinScale,
+    'scale',
+    scale,
+    `a number from ${kMinScale} to ${1 / kMinScale}`,
+  );
   check(Number.isFinite(rotation), 'rotation', rotation, 'a finite number of radians');
 }
 

@@ -123,8 +123,8 @@ export interface PaintedGlb {
 export function checkOptions(given: PaintOptions): void {
   const fault = faultOfNames('paintGlb', 'options', given, kOptions) ?? faultOfParts('paintGlb', given.parts);
   if (fault !== undefined) throw new CagecastError('badOption', 'paintGlb', fault);
-  const { texture, look, cage, template, size, ...options } = given;
-  const { atLeast = 'unfit', attributes = false, cageUvs, decoders, borders } = options;
+  const { texture, look, cage, template, size, cageUvs, ...options } = given;
+  const { atLeast = 'unfit', attributes = false, decoders, borders } = options;
   if (typeof attributes !== 'boolean') throw wrong('options.attributes', attributes, 'true or false', 'badOption');
   if (!kVerdicts.includes(atLeast))
     throw wrong('options.atLeast', atLeast, `one of ${kVerdicts.join(', ')}`, 'badOption');
@@ -139,8 +139,17 @@ export function checkOptions(given: PaintOptions): void {
     throw wrong('options.decoders', decoders, 'an object', 'badOption');
   if (cageUvs !== undefined && !isUvSetNumber(cageUvs))
     throw wrong('options.cageUvs', cageUvs, uvSetNumberText, 'badOption');
+  if (cageUvs !== undefined && !plainArray(cage, 'Uint8Array')) throw needs('cageUvs', 'a cage that is a file');
+  for (const [name, value] of Object.entries({ size, encode: options.encode }))
+    if (value !== undefined && look === undefined) throw needs(name, 'a look');
   isCut('paintGlb', borders);
 }
+
+/** The error of an option that says something of what is not given. */
+const needs = (name: string, what: string) =>
+  new CagecastError('badOption', 'paintGlb', `options.${name} is for ${what}; leave it out without one`, {
+    argument: name,
+  });
 
 /** @throws {CagecastError} `badArgument` unless one of two is given. */
 function refuseBoth(name: string, one: unknown, otherName: string, other: unknown): void {

@@ -17,7 +17,7 @@ export function isClearByMap(geometry: BufferGeometry, material: Material, alpha
   if (!map || !(transparent || alphaTest > 0)) return false;
   const uv = uvAttribute({ geometry }, layoutOf(map));
   if (uv?.itemSize !== 2) return false;
-  const isFree = freeIn(map, transparent ? 0 : alphaTest, alpha);
+  const isFree = freeIn(map, transparent ? undefined : alphaTest, alpha);
   const uvs = inTexture(valuesOf(uv), layoutOf(map));
   const doesRepeat = map.wrapS === RepeatWrapping && map.wrapT === RepeatWrapping;
   if (!isFree || !uvs.every((x) => Number.isFinite(x) && (doesRepeat || (x >= 0 && x <= 1)))) return false;
@@ -27,14 +27,14 @@ export function isClearByMap(geometry: BufferGeometry, material: Material, alpha
   return corners > 0;
 }
 
-function freeIn({ source, flipY }: Texture, cutoff: number, alpha: number): IsFree | undefined {
-  const key = [source.version, cutoff, alpha].join();
+function freeIn({ source, flipY }: Texture, cutoff: number | undefined, alpha: number): IsFree | undefined {
+  const key = [source.version, flipY, cutoff, alpha].join();
   const before = known.get(source);
   if (before?.key === key) return before.isFree;
   const picture = source.data as PixelSource | undefined;
   const image = pixelsOf(picture, flipY);
   // In a picture that became small, thin lines are faint.
-  const least = leastSeen(image?.width === picture?.width ? cutoff : 0, alpha);
+  const least = leastSeen(image?.width === picture?.width ? cutoff : undefined, alpha);
   const isFree = image && freeOf(image, (one) => one >= least, false);
   known.set(source, { key, isFree });
   return isFree;

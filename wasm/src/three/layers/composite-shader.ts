@@ -83,7 +83,7 @@ vec4 moved(sampler2D sheet, int stored, mat3 place) {
 
 vec4 movedRelief(sampler2D sheet, mat3 place) {
   vec4 found = moved(sheet, 3, place);
-  return vec4(found.rgb / max(found.a, 1e-4), 1.0);
+  return vec4(found.a > 0.0 ? found.rgb / found.a : vec3(0.5, 0.5, 1.0), 1.0);
 }
 #endif
 
