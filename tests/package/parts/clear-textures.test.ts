@@ -52,7 +52,11 @@ function make(maker: GlbMaker, look: Look): void {
   maker.json.samplers = [clamped ? { wrapS: 33071, wrapT: 33071 } : {}];
   maker.json.textures = [{ source: 0, sampler: 0 }];
   maker.json.materials = [
-    { alphaMode: mode, ...(mode === 'MASK' && { alphaCutoff: cutoff }), pbrMetallicRoughness: { baseColorTexture: { index: 0 }, baseColorFactor: [1, 1, 1, factor] } },
+    {
+      alphaMode: mode,
+      ...(mode === 'MASK' && { alphaCutoff: cutoff }),
+      pbrMetallicRoughness: { baseColorTexture: { index: 0 }, baseColorFactor: [1, 1, 1, factor] },
+    },
   ];
   const { positions, indices } = target;
   maker.node({ name: 'head', mesh: maker.mesh({ positions, indices }) });

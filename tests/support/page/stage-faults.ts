@@ -26,7 +26,11 @@ export async function stageFaults(
   const faults: string[] = [];
   for (const [width, height] of sizes) {
     await page.setViewportSize({ width, height });
-    await page.evaluate(() => scrollTo(0, 0));
+    await page.evaluate(() => {
+      scrollTo(0, 0);
+      // What follows the size does in the next frame.
+      return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    });
     const found = await page.evaluate(
       ([controls, groups]) => {
         const faults: string[] = [];
