@@ -146,7 +146,7 @@ test('an avatar’s landmarks are out of reach for undo and redo once another on
   const cards = page.locator('.avatars .avatar');
   await cards.nth(2).waitFor();
   await page.waitForFunction(
-    () => !/Reading|Fitting|Waiting|Painting/.test(document.querySelector('.avatars')!.textContent!),
+    () => !/Reading|Fitting|Waiting|Being painted/.test(document.querySelector('.avatars')!.textContent!),
     undefined,
     { timeout: 60_000 },
   );

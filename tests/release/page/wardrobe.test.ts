@@ -18,7 +18,7 @@ async function avatars(page: Page, count: number): Promise<string[]> {
     (count) => {
       const cards = [...document.querySelectorAll('.avatars .avatar')];
       // Between its share and its verdict, a cage is inspected.
-      const isBusy = cards.some((card) => /Waiting|Reading|Fitting|Painting/.test(card.textContent!));
+      const isBusy = cards.some((card) => /Waiting|Reading|Fitting|Being painted/.test(card.textContent!));
       return cards.length === count && !isBusy;
     },
     count,

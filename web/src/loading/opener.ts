@@ -5,7 +5,7 @@ import { element, showError } from '../platform/page';
 import type { Locks } from '../state/choices';
 import type { Intake } from '../state/intake';
 import { carriedBy, madeOf, sampleOf } from '../state/made-cages';
-import { asCage, asTarget, type Loader, type Model, ownCage } from '../state/model';
+import { asCage, asTarget, hasFace, type Loader, type Model, ownCage } from '../state/model';
 import { isOffered, type Paint, titleOf } from '../state/paint';
 import { haveSameUvs } from '../state/same-uvs';
 import { kChecker, type Sample, type Samples } from '../state/sample';
@@ -178,7 +178,9 @@ export class Opener implements Samples {
       if (own) return own;
     }
     const isOwn = base !== undefined && !isOffered(base, checker);
-    if (shown && (isOwn || haveSameUvs(shown.cage, cage))) return shown.paint;
+    // What is drawn for a face differs.
+    const fits = shown && haveSameUvs(shown.cage, cage) && (hasFace(shown.cage) || !hasFace(cage));
+    if (shown && (isOwn || fits)) return shown.paint;
     return this.#drawFor(cage, base?.drawn);
   }
 
@@ -218,11 +220,14 @@ export class Opener implements Samples {
     this.#request(requested);
   }
 
-  /** Opens an image that came alone: a square of a power of two is a paint, any other a sticker. */
+  /** Opens an image that came alone: a square of a power of two is a paint, any other a sticker; so is a JPEG where there is a face. */
   async #openImage(image: File, warnings: string[]): Promise<void> {
     const open = (): void => this.#open({ texture: image, unclear: [], warnings, all: [image] });
     const bitmap = await readImage(image).catch(() => undefined); // as a paint, it is said what is wrong
-    const isPaint = !bitmap || (bitmap.width === bitmap.height && (bitmap.width & (bitmap.width - 1)) === 0);
+    const cage = this.#session.shown?.cage;
+    const mayBeFace = image.type === 'image/jpeg' && cage !== undefined && hasFace(cage);
+    const isSheet = bitmap?.width === bitmap?.height && ((bitmap?.width ?? 0) & ((bitmap?.width ?? 0) - 1)) === 0;
+    const isPaint = !bitmap || (isSheet && !mayBeFace);
     if (isPaint || !this.onPicture) return open();
     const others = this.onPicture(bitmap);
     const text = `${image.name}: click where it belongs on the model.`;

@@ -45,7 +45,7 @@ const kRow = `
   </div>
   <div class="wardrobe-row">
     <label class="toggle"><input type="checkbox" id="show-all" data-testid="show-all" /><span>Show all</span></label>
-    <ol class="avatars" id="avatars" data-testid="avatars"></ol>
+    <ol class="avatars" id="avatars" data-testid="avatars" aria-label="Avatars"></ol>
     <label class="file add" title="Add files"><span class="unseen">Add files</span><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M12 5v14M5 12h14" /></svg><input type="file" id="wardrobe-input" data-testid="wardrobe-input" multiple accept=".glb,.gltf,.vrm,.bin,.png,.jpg,.jpeg,.webp,.ktx2" /></label>
     <select id="wardrobe-sample" data-testid="wardrobe-sample" aria-label="Add a sample"></select>
   </div>`;
@@ -184,7 +184,7 @@ export class WardrobeRow {
     const isDrawn = this.#page.stack.layers.length === 1;
     const taking = ready.filter(({ takesPaint, own }) => takesPaint || (own && isDrawn));
     const note = element('wardrobe-note', HTMLElement);
-    note.hidden = taking.length === ready.length || ready.length < 2;
+    note.hidden = taking.length === ready.length || ready.length < Math.max(2, avatars.length); // all are ready
     const text = `${taking.length} of ${ready.length} wear this paint.`;
     const said = note.querySelector('p')!;
     if (!note.hidden && this.#said !== text) said.textContent = this.#said = text;
@@ -216,12 +216,17 @@ export class WardrobeRow {
   /** Puts names below the feet of those who are seen. */
   #place(feet: readonly Feet[]): void {
     const { all, active } = this.#wardrobe.list;
+    const { clientWidth, clientHeight } = element('view', HTMLCanvasElement);
     const seen = all.filter((avatar) => avatar === active || avatar.standing);
     feet.forEach(({ x, y, width }, i) => {
       const item = this.#items.get(seen[i]!);
       if (!item) return;
-      item.classList.add('placed');
-      item.style.cssText = `translate: calc(${x.toFixed(1)}px - 50%) ${y.toFixed(1)}px; max-width: max(${width.toFixed()}px, 6rem)`;
+      // Elsewhere the name is in the row.
+      const isSeen = x > 0 && x < clientWidth && y > 0 && y < clientHeight;
+      item.classList.toggle('placed', isSeen);
+      item.style.cssText = !isSeen
+        ? ''
+        : `translate: calc(${x.toFixed(1)}px - 50%) ${y.toFixed(1)}px; max-width: max(${width.toFixed()}px, 6rem)`;
     });
   }
 
@@ -231,7 +236,12 @@ export class WardrobeRow {
     let pressed: PointerEvent | undefined;
     canvas.addEventListener('pointerdown', (event) => (pressed = event.button === 0 ? event : undefined));
     canvas.addEventListener('pointerup', (event) => {
-      if (!pressed || Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) > kTap) return;
+      if (
+        !pressed ||
+        this.#page.viewer.pointing.tool ||
+        Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) > kTap
+      )
+        return;
       const figure = this.#stage.at(event.clientX, event.clientY);
       const found = figure && this.#wardrobe.list.all.find(({ standing }) => standing === figure);
       if (found) this.#wardrobe.activate(found);

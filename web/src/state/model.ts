@@ -90,6 +90,10 @@ export function landmarksOf({ scene }: Pick<Model, 'scene'>): Landmarks {
   return found;
 }
 
+/** Whether a cage has landmarks of a face. */
+export const hasFace = (cage: Pick<Model, 'scene'>): boolean =>
+  Object.keys(landmarksOf(cage)).some((name) => name.startsWith('eye_'));
+
 /** A model as it is a target. @throws Error that begins with the file's name, if nothing of it is drawn. */
 export function asTarget(cage: Model): Model {
   const model = targets.get(cage) ?? cage;

@@ -37,6 +37,8 @@ export class CameraControls {
   #closeUp: (() => readonly Vector3[] | undefined) | undefined;
   /** Whether the user moved the camera. */
   #moved = false;
+  /** The front of the model that a crowd was last around. */
+  #front = 0;
   /** Seconds of idle rotation so far; undefined if it is off. */
   #swayed: number | undefined;
   /** When it went on last. */
@@ -109,7 +111,8 @@ export class CameraControls {
 
   #lookAtRegion(points: readonly Vector3[], theta: number): void {
     const { center, radius } = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
-    const distance = Math.max(kRegionMargin * radius * this.#fullDistance, this.#controls.minDistance);
+    const full = this.#stage.crowd ? kNear : this.#fullDistance; // of one model
+    const distance = Math.max(kRegionMargin * radius * full, this.#controls.minDistance);
     this.#look({ phi: kLevel, theta, radius: Math.min(distance, this.#far) }, center);
   }
 
@@ -156,8 +159,15 @@ export class CameraControls {
     const { crowd } = this.#stage;
     this.#controls.maxDistance = crowd ? kFarthest : kFar;
     this.#controls.enablePan = this.#controls.zoomToCursor = !crowd;
+    const [far, front] = [this.#far, this.#stage.front];
     if (isOther || !this.#moved) this.home();
-    else this.#far = this.#fullDistance;
+    else {
+      this.#far = this.#fullDistance;
+      const { radius, phi, theta } = this.#orbit;
+      const turned = { phi, theta: theta + front - this.#front, radius: (radius * this.#far) / far };
+      this.#look(turned, this.#controls.target.clone());
+    }
+    this.#front = front;
   }
 
   /** What moves the middle of a crowd to where the camera looks, from afar; from near it looks at the model on the stage. */

@@ -13,9 +13,9 @@ import {
 } from 'three';
 import { kCasts } from './overlay/overlay';
 
-const kTexels = 256; // per side
+const kTexels = 512; // per side
 const kHigh = 0.3; // above the floor: what is higher casts none
-const kBlur = 0.05; // of the floor's side
+const kBlur = 0.14; // of the radius of a model
 
 /** A floor that is darker the nearer something is above it, as below a cloudy sky. Drawn from below, blurred by mipmaps and a disc of samples. */
 export class ContactShadow {
@@ -31,7 +31,7 @@ export class ContactShadow {
     const material = new ShaderMaterial({
       transparent: true,
       depthWrite: false,
-      uniforms: { near: { value: this.#target.texture }, strength: { value: 1 } },
+      uniforms: { near: { value: this.#target.texture }, strength: { value: 1 }, across: { value: 1 } },
       vertexShader: `
         varying vec2 at;
         void main() {
@@ -41,12 +41,13 @@ export class ContactShadow {
       fragmentShader: `
         uniform sampler2D near;
         uniform float strength;
+        uniform float across;
         varying vec2 at;
         void main() {
           float sum = 0.0;
           for (int i = 0; i < 24; i++) {
-            float radius = ${kBlur} * sqrt((float(i) + 0.5) / 24.0), angle = 2.39996 * float(i);
-            float one = texture2D(near, at + radius * vec2(cos(angle), sin(angle)), 2.5).r;
+            float radius = ${kBlur} / (2.0 * across) * sqrt((float(i) + 0.5) / 24.0), angle = 2.39996 * float(i);
+            float one = texture2D(near, at + radius * vec2(cos(angle), sin(angle)), log2(16.0 / across)).r;
             sum += one * one;
           }
           gl_FragColor = vec4(0.0, 0.0, 0.0, strength * sum / 24.0);
@@ -66,6 +67,7 @@ export class ContactShadow {
   cast(renderer: WebGLRenderer, scene: Scene, center: Vector3, half: number): void {
     this.object.position.copy(center);
     this.object.scale.setScalar(half);
+    this.object.material.uniforms['across']!.value = half;
     this.#camera.position.copy(center);
     this.#camera.zoom = 1 / half;
     this.#camera.updateProjectionMatrix();

@@ -90,6 +90,8 @@ export class Stage {
       disposeModel(this.#model);
     }
     this.#model = model;
+    model.scene.removeFromParent();
+    model.scene.updateMatrixWorld(true);
     const box = new Box3().setFromObject(model.scene, true);
     const size = box.getSize(new Vector3());
     const scale = 2 / Math.max(size.length(), Number.MIN_VALUE);

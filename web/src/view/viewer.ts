@@ -123,7 +123,7 @@ export class Viewer {
     const { faceOf } = await import('./face-of');
     return () => {
       const { model, cage, object } = this.stage;
-      return model && faceOf(model, cage)?.map((point) => object.localToWorld(point));
+      return model && faceOf(model, cage)?.map((point) => object.localToWorld(point).sub(this.controls.shift)); // from near, it is in the middle
     };
   }
 

@@ -29,7 +29,7 @@ export class AvatarTransfers {
     const { session, loader, transferer } = this.#around;
     if (!this.#list.has(avatar)) return loader.dispose(model);
     const { cage } = avatar;
-    this.#list.update(avatar, { doing: 'Painting' });
+    this.#list.update(avatar, { doing: 'Being painted' });
     const projection =
       cage && (await projectBy(transferer, { cage, target: model }, session.rules, () => avatar.locks));
     if (!this.#list.has(avatar)) return loader.dispose(model);
@@ -63,7 +63,7 @@ export class AvatarTransfers {
     const { cage } = avatar;
     const drawing = this.#drawingOf(avatar);
     if (!drawing || drawing.name === avatar.own?.paint.drawn) return;
-    this.#list.update(avatar, { doing: 'Painting' });
+    this.#list.update(avatar, { doing: 'Being painted' });
     const paint = await drawing.draw(cage!).catch((error: unknown) => {
       this.#undrawable.add(cage!);
       throw error;

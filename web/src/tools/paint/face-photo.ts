@@ -20,6 +20,7 @@ const kBegin: readonly Place[] = [
   [0.38, 0.42],
   [0.62, 0.42],
 ];
+const kLeastApart = 0.02; // of the photo: the dots of two eyes
 const kStep = 0.005; // of the photo: how far an arrow key moves a dot
 
 /** The eyes of a face, and its directions. */
@@ -142,14 +143,18 @@ export function askForEyes(photo: ImageBitmap, found: (dots: readonly Place[]) =
   const canvas = make('canvas', { width: photo.width, height: photo.height });
   canvas.getContext('2d')!.drawImage(photo, 0, 0);
   const area = make('div', { className: 'face-dots' }, canvas);
+  area.style.width = `min(100%, 55dvh * ${photo.width / photo.height})`;
+  const use = make('button', { type: 'button', className: 'strong' }, 'Put it on');
   const places = [...kBegin];
   const dots = ['Left eye in the picture', 'Right eye in the picture'].map((ariaLabel) =>
-    make('button', { type: 'button', ariaLabel }),
+    make('button', { type: 'button', ariaLabel, ariaDescription: 'Arrow keys move it' }),
   );
   const move = (index: number, x: number, y: number): void => {
     places[index] = [Math.min(1, Math.max(0, x)), Math.min(1, Math.max(0, y))];
     const { style } = dots[index]!;
     [style.left, style.top] = places[index]!.map((share) => `${100 * share}%`) as [string, string];
+    const [[left, top], [right, bottom]] = places as [Place, Place];
+    use.disabled = Math.hypot(right - left, bottom - top) < kLeastApart;
   };
   const follow = (index: number, { clientX, clientY }: PointerEvent): void => {
     const { left, top, width, height } = canvas.getBoundingClientRect();
@@ -173,7 +178,6 @@ export function askForEyes(photo: ImageBitmap, found: (dots: readonly Place[]) =
       if (step) move(index, places[index]![0] + kStep * step[0], places[index]![1] + kStep * step[1]);
     });
   });
-  const use = make('button', { type: 'button', className: 'strong' }, 'Put it on');
   const leave = make('button', { type: 'button', className: 'quiet' }, 'Cancel');
   const title = make('h2', { id: 'face-title' }, 'Put the dots on the eyes');
   const dialog = make(

@@ -1,8 +1,7 @@
 import { loadPaint, readImage } from '../../loading/load-paint';
 import { ask, kAskedFor, type Question } from '../../platform/ask';
 import { element, showError } from '../../platform/page';
-import { landmarksOf } from '../../state/model';
-import { titleOf } from '../../state/paint';
+import { hasFace, landmarksOf } from '../../state/model';
 import type { Session } from '../../state/session';
 import type { Layers } from './painter';
 import type { StickerTool } from './sticker-tool';
@@ -20,21 +19,20 @@ export function holdImages(
 ): (image: ImageBitmap) => Question['answers'] {
   const putOnFace = async (photo: ImageBitmap): Promise<void> => {
     const { askForEyes, drawFace, findFace } = await import('./face-photo');
+    choose(false);
     askForEyes(photo, async (dots) => {
       const { cage } = session.shown!;
       const face = findFace(landmarksOf(cage));
-      if (!face) return;
+      if (!face) return showError('This model has no face that the page knows of.');
       const file = new File([await drawFace(photo, dots, cage.mesh, face)], 'Face.png', { type: 'image/png' });
       const paint = await loadPaint(file);
-      choose(false);
-      layers.edits.do(`adding ${titleOf(paint)}`, () => layers.stack.add(titleOf(paint), paint));
+      layers.edits.do('adding Face', () => layers.stack.add('Face', paint));
     });
   };
   const hold = (image: ImageBitmap): Question['answers'] => {
     choose(true);
     sticker.setImage(image);
-    const names = session.shown ? Object.keys(landmarksOf(session.shown.cage)) : [];
-    if (!names.some((name) => name.startsWith('eye_'))) return [];
+    if (!session.shown || !hasFace(session.shown.cage)) return [];
     return [{ title: 'It is a face', run: () => void putOnFace(image) }];
   };
   const input = element('sticker-image', HTMLInputElement);

@@ -16,6 +16,7 @@ export interface Room {
 export function measure({ scene }: Pick<Model, 'scene'>): Room & { scale: number; middle: Vector3 } {
   const parent = scene.parent;
   scene.removeFromParent(); // its own space
+  scene.updateMatrixWorld(true);
   const box = new Box3().setFromObject(scene, true);
   parent?.add(scene);
   const size = box.getSize(new Vector3());
