@@ -167,17 +167,20 @@ interface SharedTexture {
 
 /**
  * Bakes paints into the textures of a model; see `bake` of cagecast/gltf. If it throws, the model is unchanged.
- * @returns what was done, and the parts that are baked.
+ * @returns what was done, and the parts that are baked: with their colours, if there are any.
  */
 export async function bakeModel(model: BakeModel, input: BakeInput): Promise<{ report: BakeReport; baked: Set<Part> }> {
   const report: BakeReport = { textures: [], left: [], moving: [] };
   const baked = new Set<Part>();
   const replacements: (() => void)[] = [];
+  /** Materials that cannot have the colours: what shows these there shows them in the shade, too. */
+  const uncolored = new Set<number | undefined>();
   for (const slot of kPlaces) {
     const coat = input.coats[slot];
     if (!coat) continue;
     const refused = new Map<User, string>();
-    const isSeen = (material: number) => coat.on?.includes(model.lightingOf(material)) ?? true;
+    const isSeen = (material: number) =>
+      (coat.on?.includes(model.lightingOf(material)) ?? true) && !(slot === 'shade' && uncolored.has(material));
     for (const shared of listTextures(model, slot, refused, isSeen)) {
       const painted = new Set(shared.users.map(({ part }) => part).filter((part) => isPainted(part, input.result)));
       if (painted.size === 0) continue;
@@ -195,6 +198,7 @@ export async function bakeModel(model: BakeModel, input: BakeInput): Promise<{ r
       report.textures.push({ slot, parts, width, height, overlap, mimeType: imageType(bytes) ?? kPng, before });
     }
     for (const [{ part, material }, reason] of refused) {
+      if (slot === 'color') uncolored.add(material);
       const ofVariant = material !== model.materialOf(part) && { material: model.nameOf(material!) };
       const left = { part: part.name, ...ofVariant, reason };
       const isTold = report.left.some((one) => JSON.stringify(one) === JSON.stringify(left));
@@ -202,6 +206,7 @@ export async function bakeModel(model: BakeModel, input: BakeInput): Promise<{ r
     }
   }
   for (const replace of replacements) replace();
+  for (const part of baked) if (uncolored.has(model.materialOf(part))) baked.delete(part);
   for (const number of new Set([...baked].flatMap((part) => [model.materialOf(part)!, ...model.variantsOf(part)])))
     for (const reason of model.movedBy(number)) report.moving.push({ material: model.nameOf(number), reason });
   return { report, baked };
