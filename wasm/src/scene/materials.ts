@@ -36,6 +36,17 @@ const kDarkest = 1e-3;
 export const unlitExtension = 'KHR_materials_unlit';
 /** The extension of glTF for materials that glow more than the screen's white. */
 export const emissiveExtension = 'KHR_materials_emissive_strength';
+
+/** Makes a material glow as its texture says, times a strength. */
+export function glow(json: GLTF.IGLTF, material: GLTF.IMaterial, strength: number): void {
+  material.emissiveFactor = [1, 1, 1];
+  const { [emissiveExtension]: _, ...others } = material.extensions ?? {};
+  material.extensions = { ...others, ...(strength !== 1 && { [emissiveExtension]: { emissiveStrength: strength } }) };
+  if (Object.keys(material.extensions).length === 0) delete material.extensions;
+  if (strength !== 1 && !json.extensionsUsed?.includes(emissiveExtension))
+    (json.extensionsUsed ??= []).push(emissiveExtension);
+}
+
 /** The texture of a material in a slot. */
 export function infoOf(material: GLTF.IMaterial, slot: Exclude<Place, 'shade'>): GLTF.ITextureInfo | undefined {
   if (slot === 'color') return material.pbrMetallicRoughness?.baseColorTexture;

@@ -1,6 +1,6 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { Part } from '../../scene/extract.js';
-import { emissiveExtension, infoOf, Materials, type Place, type TextureUse } from '../../scene/materials.js';
+import { glow, infoOf, Materials, type Place, type TextureUse } from '../../scene/materials.js';
 import { shadeInfoOf, toonExtension, toonGamma, toonProperties } from '../../scene/toon.js';
 import type { GlbWriter } from '../glb-writer.js';
 import { imageType } from '../image-file.js';
@@ -64,15 +64,7 @@ export class FileModel extends Materials implements BakeModel {
 
   /** Makes a material glow as its texture says. */
   #glow(number: number, texture: number, strength: number): void {
-    const material = this.material(number);
-    material.emissiveFactor = [1, 1, 1];
-    if (strength === 1) delete material.extensions?.[emissiveExtension];
-    else {
-      material.extensions = { ...material.extensions, [emissiveExtension]: { emissiveStrength: strength } };
-      if (!this.json.extensionsUsed?.includes(emissiveExtension))
-        (this.json.extensionsUsed ??= []).push(emissiveExtension);
-    }
-    if (Object.keys(material.extensions ?? {}).length === 0) delete material.extensions;
+    glow(this.json, this.material(number), strength);
     // What reads VRM 0 takes its colours for ones of a display.
     const stored = strength ** (1 / toonGamma);
     this.#setToon(number, '_EmissionMap', texture, { _EmissionColor: [stored, stored, stored, 1] });

@@ -1,5 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
-import { emissiveExtension } from '../../scene/materials.js';
+import { glow } from '../../scene/materials.js';
 import { overlayMark } from '../../scene/overlay-mark.js';
 import { tintToon, toonExtension } from '../../scene/toon.js';
 import { copyProperties } from '../output/vrm-materials.js';
@@ -58,11 +58,8 @@ function layChannels(
     material.pbrMetallicRoughness = { ...pbr, metallicRoughnessTexture: on(orm) };
   }
   if (!emissive) return;
-  Object.assign(material, { emissiveTexture: on(emissive), emissiveFactor: [1, 1, 1] });
-  if (strength === 1) return;
-  material.extensions = { ...material.extensions, [emissiveExtension]: { emissiveStrength: strength } };
-  const { json } = writer;
-  if (!json.extensionsUsed?.includes(emissiveExtension)) (json.extensionsUsed ??= []).push(emissiveExtension);
+  material.emissiveTexture = on(emissive);
+  glow(writer.json, material, strength);
 }
 
 /** Adds a copy of a material, tinted, for triangles of its surface. @returns its number. */
