@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { type Document, NodeIO } from '@gltf-transform/core';
-import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { ALL_EXTENSIONS, KHRMaterialsEmissiveStrength } from '@gltf-transform/extensions';
 import { type PaintOptions, paintGlb } from 'cagecast/gltf';
 import type { SavedLayer, SavedLayers } from 'cagecast/three';
 import { PNG } from 'pngjs';
@@ -116,5 +116,51 @@ describe('colours that no texture can hold lie in an overlay', () => {
     assert.equal(copy!.shadeMultiplyTexture, undefined);
     assert.ok(Math.abs(copy!.shadeColorFactor[0]! - 0.5 * kTint) < 1e-4);
     assert.ok(painted.materials![primitives[1]!.material!]!.emissiveTexture);
+  });
+});
+
+/** The box without a texture, so that all of a look is on a copy of its surface. */
+const bare = (change: (document: Document) => void) =>
+  boxWith((document) => {
+    document.getRoot().listMaterials()[0]!.setBaseColorTexture(null);
+    change(document);
+  });
+
+describe('a copy of a surface', () => {
+  test('glows as the material does where no layer glows', async () => {
+    const model = await bare((document) => {
+      const strength = document.createExtension(KHRMaterialsEmissiveStrength).createEmissiveStrength();
+      const [material] = document.getRoot().listMaterials();
+      material!.setEmissiveFactor([0.1, 0.1, 0.1]);
+      material!.setExtension('KHR_materials_emissive_strength', strength.setEmissiveStrength(5));
+    });
+    const [, copy] = await shownBy((await paint(model, redWith({ emissive: 0.2 }))).bytes);
+    assert.deepEqual(copy!.getEmissiveFactor(), [1, 1, 1]);
+    assert.equal(copy!.getExtension('KHR_materials_emissive_strength'), null, 'its strength is in the texture');
+  });
+
+  test('has no tangents in its morph targets where it has none itself', async () => {
+    const model = await bare((document) => {
+      const [buffer] = document.getRoot().listBuffers();
+      const [primitive] = document.getRoot().listMeshes()[0]!.listPrimitives();
+      const count = primitive!.getAttribute('POSITION')!.getCount();
+      const numbers = (type: 'VEC3' | 'VEC4', array: Float32Array) =>
+        document.createAccessor().setType(type).setArray(array).setBuffer(buffer!);
+      const tangents = new Float32Array(4 * count).map((_, i) => (i % 4 === 0 || i % 4 === 3 ? 1 : 0));
+      primitive!.setAttribute('TANGENT', numbers('VEC4', tangents));
+      const target = document.createPrimitiveTarget();
+      target.setAttribute('POSITION', numbers('VEC3', new Float32Array(3 * count).fill(0.1)));
+      target.setAttribute('TANGENT', numbers('VEC3', new Float32Array(3 * count)));
+      primitive!.addTarget(target);
+      document.getRoot().listMeshes()[0]!.setWeights([0]);
+    });
+    const before = await validate(model);
+    const { bytes } = await paint(model, redWith({ normal: urlOf(200, 128, 230, 255) }));
+    assert.deepEqual(
+      (await validate(bytes)).filter((line) => !before.includes(line)),
+      [],
+    );
+    const [, copy] = unpackGlb(bytes).json.meshes![0]!.primitives;
+    assert.deepEqual(Object.keys(copy!.targets![0]!), ['POSITION']);
   });
 });

@@ -326,7 +326,9 @@ class OverlayWriter {
       indices: this.#writer.addIndices(corners, count),
       material: this.#material(base, lit, inPlaceOf !== undefined),
       ...(base.targets && {
-        targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, count)),
+        targets: base.targets.map((deltas) =>
+          this.#morph(deltas, count, (one) => isMorphed(one, 'NORMAL' in attributes)),
+        ),
       }),
       ...(dracoOf(base) && { extensions: { [dracoExtension]: dracoOf(base) } }),
       extras: { ...overlayMark, ...(inPlaceOf !== undefined && ({ cagecastInPlaceOf: inPlaceOf } satisfies InPlace)) },
@@ -352,19 +354,24 @@ class OverlayWriter {
     this.#surfaces.set(key, copy);
     // Tangents are those of other UVs.
     const { TANGENT: _, ...others } = attributes;
+    const { count } = this.#writer.json.accessors![uvs]!;
+    const own = structuredClone(base);
+    const targets =
+      copy.hasRelief && own.targets?.map((deltas) => this.#morph(deltas, count, (one) => one !== 'TANGENT'));
     const primitive = {
-      ...structuredClone(base),
+      ...own,
+      ...(targets && { targets }),
       attributes: { ...(copy.hasRelief ? others : attributes), [set]: uvs },
-      indices: this.#writer.addIndices(corners, this.#writer.json.accessors![uvs]!.count),
+      indices: this.#writer.addIndices(corners, count),
       material: copy.number,
       extras: { ...overlayMark, cagecastInPlaceOf: inPlaceOf } satisfies InPlace,
     };
     return { primitive, hasColors: copy.hasColors };
   }
 
-  /** What a morph target of the base is to the overlay. One without anything in it is not allowed: it moves nothing then. */
-  #morph(deltas: Record<string, number>, hasNormals: boolean, count: number): Record<string, number> {
-    const own = Object.entries(deltas).filter(([semantic]) => isMorphed(semantic, hasNormals));
+  /** What is left of a morph target. One without anything in it is not allowed: it moves nothing then. */
+  #morph(deltas: Record<string, number>, count: number, keeps: (semantic: string) => boolean): Record<string, number> {
+    const own = Object.entries(deltas).filter(([semantic]) => keeps(semantic));
     if (own.length > 0) return Object.fromEntries(own);
     const still = { min: [0, 0, 0], max: [0, 0, 0] };
     return { POSITION: this.#writer.addAttribute(new Float32Array(3 * count), 3, still, true) };
