@@ -1,6 +1,7 @@
 import { colorByte, type Image, linearOf, shareOf } from '../../bake/image.js';
 import { regionMask } from '../../bake/index.js';
 import { wrong } from '../../core/checks.js';
+import { CagecastError } from '../../core/error.js';
 import { firstLine } from '../../scene/input-error.js';
 import type { ImageCodec } from '../../scene/materials.js';
 import { counted, maxCompositeSize, type SavedImage } from './saved-images.js';
@@ -60,6 +61,13 @@ export async function composeLook(
   ]);
   const size = Math.max(...sides, 0) > kSmallSize ? maxCompositeSize : kSmallSize;
   const drawn: Drawn[] = [];
+  /** By their bytes, which layers share. */
+  const known = new Map<Uint8Array, Image>();
+  const readOnce = async (image: SavedImage): Promise<Image> => {
+    const found = known.get(image.bytes) ?? (await read(image, decode));
+    known.set(image.bytes, found);
+    return found;
+  };
   for (const { image, normal, style } of seen) {
     const whole = { ...plainData, ...style };
     const { region } = whole;
@@ -68,8 +76,8 @@ export async function composeLook(
     const mask = region === null ? undefined : regionMask({ regions }, region, { width: maskSize });
     drawn.push({
       ...whole,
-      take: placed(takerOf(await read(image, decode), linearOf, { edge }), whole, samples),
-      relief: normal && placed(takerOf(await read(normal, decode), shareOf, { edge, isOpaque: true }), whole, samples),
+      take: placed(takerOf(await readOnce(image), linearOf, { edge }), whole, samples),
+      relief: normal && placed(takerOf(await readOnce(normal), shareOf, { edge, isOpaque: true }), whole, samples),
       mask: mask && takerOf(mask, shareOf, { edge: 'clamp' }),
       tint: linear(whole.tint),
       isInGlow: whole.emissive > 0 || (whole.blend === 'normal' && drawn.some(({ isInGlow }) => isInGlow)),
@@ -83,9 +91,12 @@ const linear = (color: string): Triple =>
   [1, 3, 5].map((at) => linearOf[Number.parseInt(color.slice(at, at + 2), 16)]!) as unknown as Triple;
 
 async function read({ name, bytes, type, width, height }: SavedImage, decode: ImageCodec['decode']): Promise<Image> {
-  const image = await decode(bytes, type).catch((error: unknown) => {
-    throw wrong(`${name} cannot be read: ${firstLine(error)}`);
-  });
+  let image: Image;
+  try {
+    image = await decode(bytes, type);
+  } catch (error) {
+    throw error instanceof CagecastError ? error : wrong(`${name} cannot be read: ${firstLine(error)}`);
+  }
   if (image.width === width && image.height === height) return image;
   throw wrong(`${name} has ${counted(image.width)} × ${counted(image.height)} pixels, not as many as it says`);
 }

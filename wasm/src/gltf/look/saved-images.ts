@@ -14,29 +14,41 @@ export interface SavedImage {
   height: number;
 }
 
+/** The longest data URL of an image: of one without compression, with room for what else is in its file. */
+const kMaxUrl = Math.ceil(1.4 * 4 * maxCompositeSize ** 2) + 65536; // characters
+
+/** Images that were read, by their data URLs: layers share them. */
+export type ReadImages = Map<string, Omit<SavedImage, 'name'>>;
+
 /**
  * Reads how large an image of a saved layer says to be, which anybody may have written: a few bytes can stand for gigabytes. `save` writes
  * none of more than 2048 × 2048, so that those of all layers take 512 MiB at most, two for each.
- * @param side  The pixels along each side that it must have. Default: any.
- * @throws {CagecastError} `badArgument` that names the image, its pixels and the limit.
+ * @param known  Gets what is read.
+ * @param side   The pixels along each side that it must have. Default: any.
+ * @throws {CagecastError} `badArgument` that names the image, its characters or pixels, and the limit.
  */
-export function readImage(url: unknown, name: string, side?: number): SavedImage {
+export function readImage(url: unknown, name: string, known: ReadImages, side?: number): SavedImage {
   if (typeof url !== 'string') throw notA('the data URL of an image', name, url);
-  const { bytes, type } = bytesOf(url, name);
-  const size = imageSize(bytes);
-  if (!size) throw wrong(`${name} cannot be read: it does not say how many pixels it has`);
-  const { width, height } = size;
+  if (url.length > kMaxUrl)
+    throw wrong(`${name} is a data URL of ${counted(url.length)} characters, more than ${counted(kMaxUrl)}`);
+  const image = known.get(url) ?? fileOf(url, name);
+  known.set(url, image);
+  const { width, height } = image;
   const has = `${name} has ${counted(width)} × ${counted(height)} pixels`;
   if (side !== undefined && (width !== side || height !== side))
     throw wrong(`${has}, not ${side} × ${side} as its painting`);
   if (Math.max(width, height) > maxCompositeSize)
     throw wrong(`${has}, more than ${maxCompositeSize} × ${maxCompositeSize}`);
-  return { name, bytes, type, width, height };
+  return { name, ...image };
 }
 
-function bytesOf(url: string, name: string): ReturnType<typeof fromDataUrl> {
+/** What a data URL says of its image. @throws {CagecastError} */
+function fileOf(url: string, name: string): Omit<SavedImage, 'name'> {
   try {
-    return fromDataUrl(url);
+    const file = fromDataUrl(url);
+    const size = imageSize(file.bytes);
+    if (!size) throw new Error('it does not say how many pixels it has');
+    return { ...file, ...size };
   } catch (error) {
     throw wrong(`${name} cannot be read: ${(error as Error).message}`);
   }
@@ -48,5 +60,8 @@ export const counted = (pixels: number): string => pixels.toLocaleString('en');
 function fromDataUrl(url: string): { bytes: Uint8Array<ArrayBuffer>; type: string } {
   const [, type, base64] = /^data:(image\/[\w.+-]+);base64,(.*)$/s.exec(url) ?? [];
   if (base64 === undefined) throw new Error('it is no data URL of an image');
-  return { bytes: Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0)), type: type! };
+  const letters = atob(base64);
+  const bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = letters.charCodeAt(i);
+  return { bytes, type: type! };
 }

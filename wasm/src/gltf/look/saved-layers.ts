@@ -1,7 +1,7 @@
 import { checkColor, notA, wrong } from '../../core/checks.js';
 import { CagecastError, show } from '../../core/error.js';
 import type { Outline } from '../../parts/template.js';
-import { readImage, type SavedImage } from './saved-images.js';
+import { type ReadImages, readImage, type SavedImage } from './saved-images.js';
 import { type PlainStyle, readPlainStyle } from './style.js';
 
 /** No tint. */
@@ -84,11 +84,12 @@ export function readSavedLayers(
   checkColor('saved.baseTint', baseTint);
   const placeOf = (i: number): string => `saved.layers[${i}]`;
   const styles = Array.from(layers, (layer, i) => checkLayer(layer, placeOf(i), regions));
+  const known: ReadImages = new Map();
   const checked = layers.map(({ name, painting, image, normal }, i): CheckedLayer => {
     return {
       ...{ name, painting, style: styles[i]! },
-      image: readImage(urlIn(images, image), `${placeOf(i)}.image`, painting),
-      normal: normal === undefined ? undefined : readImage(urlIn(images, normal), `${placeOf(i)}.normal`),
+      image: readImage(urlIn(images, image), `${placeOf(i)}.image`, known, painting),
+      normal: normal === undefined ? undefined : readImage(urlIn(images, normal), `${placeOf(i)}.normal`, known),
     };
   });
   return { layers: checked, baseTint };
