@@ -1,4 +1,15 @@
-import type { Image } from '../bake/image.js';
+import { checkImage, type Image } from '../bake/image.js';
+import type { ImageCodec } from '../scene/materials.js';
+
+/**
+ * A caller's decoder that gives images and nothing else. Errors of its own stay as they are.
+ * @param name  As in "options.decode", for messages.
+ * @throws {CagecastError} `badArgument` once it gives no image.
+ */
+export const checkedDecode =
+  (fn: string, name: string, decode: ImageCodec['decode']): ImageCodec['decode'] =>
+  async (bytes, mimeType) =>
+    checkImage(fn, `${name}(…)`, await decode(bytes, mimeType));
 
 /** Decodes an image by what a browser has for it; undefined where that is missing, as in Node. */
 export const hostDecode = (): ((bytes: Uint8Array, mimeType: string) => Promise<Image>) | undefined =>

@@ -7,6 +7,7 @@ import { type ImageCodec, type Slot, slots } from '../../scene/materials.js';
 import { addTransfer } from '../document/add-transfer.js';
 import { removeOverlays } from '../document/earlier-in-document.js';
 import { ofArgument, transferDocument, wrong } from '../document/transfer-document.js';
+import { checkedDecode } from '../host-decode.js';
 import { preparePiece } from '../primitive-group.js';
 import type { MaskSources } from './mask-sources.js';
 import { type BakeReport, bakeModel, coatsOf, type Paints } from './plan.js';
@@ -78,7 +79,7 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
       result,
       prepared: (part) => preparePiece(part, result, cut),
       coats: coatsOf(paints),
-      codec: images,
+      codec: { ...images, decode: checkedDecode('bake', 'images.decode', images.decode) },
       size,
     }).catch((error) => {
       throw ofArgument('bake', 'target', error);

@@ -1,6 +1,16 @@
 import type { TransferResult } from '../../api/index.js';
 import { colorByte, linearOf } from '../../bake/image.js';
-import { areaOf, type Baked, fill, type Image, type Kind, type Layout, layOver, resize } from '../../bake/index.js';
+import {
+  areaOf,
+  type Baked,
+  fill,
+  type Image,
+  type Kind,
+  type Layout,
+  layOver,
+  mostTexels,
+  resize,
+} from '../../bake/index.js';
 import { kMaxLayers } from '../../bake/pattern.js';
 import { CagecastError } from '../../core/error.js';
 import { applySplit } from '../../parts/blend.js';
@@ -10,7 +20,7 @@ import type { Part } from '../../scene/extract.js';
 import type { ImageCodec, Materials, Place, Slot, TextureUse } from '../../scene/materials.js';
 import { requireFinite } from '../../scene/pieces.js';
 import { layUvs, type UvLayout } from '../../scene/uv-layout.js';
-import { imageType } from '../image-file.js';
+import { imageSize, imageType } from '../image-file.js';
 
 const kindOf: Record<Slot, Kind> = { color: 'color', normal: 'normal', orm: 'data' };
 
@@ -332,21 +342,18 @@ async function baseOf(
   }
   const file = await model.source.imageOf(use.texture);
   if (!file) return 'its texture has no image';
+  const name = `its ${slotNames[slot]} texture (${file.mimeType})`;
+  const said = imageSize(file.bytes);
+  if (said && Math.max(said.width, said.height) > mostTexels)
+    return `${name} has ${said.width} × ${said.height} pixels, more than ${mostTexels} × ${mostTexels}`;
   let image: Image;
   try {
     image = await codec.decode(file.bytes, file.mimeType);
   } catch (error) {
-    return `its ${slotNames[slot]} texture (${file.mimeType}) cannot be read: ${error instanceof Error ? error.message : error}`;
+    if (error instanceof CagecastError) throw error;
+    return `${name} cannot be read: ${error instanceof Error ? error.message : error}`;
   }
-  const { width, height, data } = image;
-  if (data.length !== 4 * width * height)
-    throw new CagecastError(
-      'badArgument',
-      'bake',
-      `images.decode gave ${data.length} bytes for ${width} × ${height} pixels, not 4 for each`,
-      { argument: 'images' },
-    );
-  if (redIsNew) image = { ...image, data: data.map((byte, i) => (i % 4 === 0 ? 255 : byte)) };
+  if (redIsNew) image = { ...image, data: image.data.map((byte, i) => (i % 4 === 0 ? 255 : byte)) };
   return size === undefined ? image : resize(image, ...scaledTo(image, size));
 }
 

@@ -3,7 +3,7 @@ import type { ImageCodec } from '../../scene/materials.js';
 import { FileModel } from '../bake/bake-file.js';
 import { type BakeInput, type BakeReport, bakeModel, isPainted } from '../bake/plan.js';
 import type { GlbWriter } from '../glb-writer.js';
-import { hostDecode } from '../host-decode.js';
+import { checkedDecode, hostDecode } from '../host-decode.js';
 import type { GltfFile } from '../open-gltf.js';
 import { type Paint, paintOf } from '../overlay.js';
 import { coatsOfLook } from './coats.js';
@@ -44,8 +44,9 @@ export const readLook = (saved: unknown, regions: Regions, decode: ImageCodec['d
 export async function bakeLook(
   saved: unknown,
   { file, parts, writer, regions, ...input }: Drawn,
-  { decode = hostDecode() ?? decodePng, encode = encodePng }: Codec,
+  { decode: given, encode = encodePng }: Codec,
 ): Promise<{ report: BakeReport; baked: Set<Part>; overlay: Paint | undefined }> {
+  const decode = given ? checkedDecode('paintGlb', 'options.decode', given) : (hostDecode() ?? decodePng);
   const look = await readLook(saved, regions, decode);
   const codec = { decode, encode };
   const model = new FileModel(file, parts, writer);

@@ -45,7 +45,7 @@ export async function withLook(
     { file, parts, writer, regions, result, size, prepared: (part) => prepared[parts.indexOf(part)]! },
     codec,
   ).catch((error: unknown) => {
-    if (!(error instanceof CagecastError)) throw error;
+    if (!(error instanceof CagecastError) || error.fn === 'paintGlb') throw error;
     throw new CagecastError(error.code, 'paintGlb', error.reason, { argument: 'look', cause: error });
   });
   const data = writer.finish();
