@@ -1,4 +1,4 @@
-import type { Image } from '../../bake/image.js';
+import { type Image, mostTexels } from '../../bake/image.js';
 import { joinBytes } from '../../parts/glb.js';
 import { imageSize } from '../image-file.js';
 
@@ -40,6 +40,9 @@ export async function decodePng(png: Uint8Array, mimeType: string): Promise<Imag
   if (!size || !channels || bits !== 8 || interlaced)
     throw new Error('is not a plain PNG; what reads such images can be given: options.decode');
   const { width, height } = size;
+  // The header comes first: nothing is unpacked that is too large.
+  if (Math.max(width, height) > mostTexels)
+    throw new Error(`has ${width} × ${height} pixels, more than ${mostTexels} × ${mostTexels}`);
   const chunks = new Map<string, Uint8Array[]>();
   const view = new DataView(png.buffer, png.byteOffset, png.byteLength);
   for (let at = 8; at + 12 <= png.length; at += 12 + view.getUint32(at)) {
@@ -54,36 +57,69 @@ export async function decodePng(png: Uint8Array, mimeType: string): Promise<Imag
   const bytes = await through(new DecompressionStream('deflate'), packed, (row + 1) * height);
   if (bytes.length !== (row + 1) * height) throw new Error('is incomplete');
   const [palette, clear] = [chunks.get('PLTE')?.[0], chunks.get('tRNS')?.[0]];
+  if (type === 3 && !palette) throw new Error('has no palette');
   const values = unfiltered(bytes, row, channels);
+  // Of grey and of red, green and blue: the one colour that is clear, as numbers of 2 bytes.
+  const key = type === 0 || type === 2 ? clear : undefined;
+  const isKey = (from: number) => {
+    for (let k = 0; k < channels; ++k) if (key![2 * k] !== 0 || values[from + k] !== key![2 * k + 1]) return false;
+    return true;
+  };
   const data = new Uint8ClampedArray(4 * width * height);
   for (let from = 0, to = 0; to < data.length; from += channels, to += 4) {
     const first = values[from]!;
     const isGrey = channels < 3;
     for (let k = 0; k < 3; ++k) data[to + k] = type === 3 ? palette![3 * first + k]! : values[from + (isGrey ? 0 : k)]!;
-    data[to + 3] = type === 3 ? (clear?.[first] ?? 255) : channels % 2 === 0 ? values[from + channels - 1]! : 255;
+    if (type === 3) data[to + 3] = clear?.[first] ?? 255;
+    else if (channels % 2 === 0) data[to + 3] = values[from + channels - 1]!;
+    else data[to + 3] = key && isKey(from) ? 0 : 255;
   }
   return { width, height, data };
 }
 
-/** Undoes the filters of rows. */
+/** Undoes the filters of rows. @throws {Error} for one that there is not. */
 function unfiltered(bytes: Uint8Array, row: number, channels: number): Uint8Array {
   const values = new Uint8Array((bytes.length / (row + 1)) * row);
-  for (let y = 0, from = 0, to = 0; to < values.length; ++y) {
-    const filter = bytes[from++];
-    for (let x = 0; x < row; ++x, ++to) {
-      const left = x < channels ? 0 : values[to - channels]!;
-      const above = y === 0 ? 0 : values[to - row]!;
-      const corner = x < channels || y === 0 ? 0 : values[to - row - channels]!;
-      const guess = [0, left, above, (left + above) >> 1, paeth(left, above, corner)][filter!] ?? 0;
-      values[to] = bytes[from++]! + guess;
-    }
-  }
+  for (let from = 0, to = 0; to < values.length; from += row + 1, to += row)
+    unfilterRow(bytes.subarray(from, from + row + 1), values, { to, row, channels });
   return values;
+}
+
+/** Undoes the filter of a row, which its first byte names. @param values  Get it at `to`; rows above are there. */
+function unfilterRow(
+  bytes: Uint8Array,
+  values: Uint8Array,
+  { to, row, channels }: { to: number; row: number; channels: number },
+): void {
+  const left = (x: number) => (x < channels ? 0 : values[to + x - channels]!);
+  const above = (x: number) => (to === 0 ? 0 : values[to + x - row]!);
+  const corner = (x: number) => (x < channels || to === 0 ? 0 : values[to + x - row - channels]!);
+  switch (bytes[0]) {
+    case 0:
+      values.set(bytes.subarray(1), to);
+      break;
+    case 1:
+      for (let x = 0; x < row; ++x) values[to + x] = bytes[1 + x]! + left(x);
+      break;
+    case kUp:
+      for (let x = 0; x < row; ++x) values[to + x] = bytes[1 + x]! + above(x);
+      break;
+    case 3:
+      for (let x = 0; x < row; ++x) values[to + x] = bytes[1 + x]! + ((left(x) + above(x)) >> 1);
+      break;
+    case 4:
+      for (let x = 0; x < row; ++x) values[to + x] = bytes[1 + x]! + paeth(left(x), above(x), corner(x));
+      break;
+    default:
+      throw new Error(`has a row with filter ${bytes[0]}, which there is not`);
+  }
 }
 
 /** The one of three neighbours that is nearest to what a plane through them gives. */
 function paeth(left: number, above: number, corner: number): number {
-  const [a, b, c] = [Math.abs(above - corner), Math.abs(left - corner), Math.abs(left + above - 2 * corner)];
+  const a = Math.abs(above - corner);
+  const b = Math.abs(left - corner);
+  const c = Math.abs(left + above - 2 * corner);
   return a <= b && a <= c ? left : b <= c ? above : corner;
 }
 
