@@ -95,6 +95,24 @@ describe('colours that no texture can hold lie in an overlay', () => {
       }
     });
 
+  test('without what lies beneath them where the material has variants, which is said', async () => {
+    const { json, bin } = unpackGlb(await colored());
+    json.extensionsUsed = ['KHR_materials_variants'];
+    json.extensions = { KHR_materials_variants: { variants: [{ name: 'other' }] } };
+    const mappings = [{ material: 0, variants: [0] }];
+    json.meshes![0]!.primitives[0]!.extensions = { KHR_materials_variants: { mappings } };
+    const { left } = await paint(packGlb({ json, bin }), redWith({}));
+    assert.deepEqual(
+      left.map(({ reason }) => reason),
+      [
+        'its vertices have colours',
+        'its material has variants: neither the base tint nor what lies beneath the colours is shown',
+      ],
+    );
+    const plain = await paint(packGlb({ json, bin }), { ...redWith({}), baseTint: '#ffffff' });
+    assert.equal(plain.left.length, 1);
+  });
+
   test('with the shade of a toon material, which is tinted once', async () => {
     const { json, bin } = unpackGlb(await colored());
     json.extensionsUsed = ['VRMC_vrm', 'VRMC_materials_mtoon'];

@@ -30,6 +30,9 @@ interface Drawn extends Pick<BakeInput, 'result' | 'prepared' | 'size'> {
 
 export { coatsOfLook } from './coats.js';
 
+/** What is lost of a part that gets an overlay but no copy of its surface. */
+const kOfVariants = 'its material has variants: neither the base tint nor what lies beneath the colours is shown';
+
 /**
  * Reads and draws saved layers.
  * @throws {CagecastError} as `load` of layers does; for an image that cannot be read, too.
@@ -54,6 +57,10 @@ export async function bakeLook(
   const done = await bakeModel(model, { ...input, coats, codec });
   const rest = parts.filter((part) => !done.baked.has(part) && isPainted(part, input.result));
   if (rest.length === 0 || Object.keys(coats).length === 0) return { ...done, overlay: undefined };
+  const { tint, roughness, metalness, normal, glow } = look;
+  if (tint || roughness || metalness || normal || glow)
+    for (const part of rest)
+      if (model.variantsOf(part).length > 0) done.report.left.push({ part: part.name, reason: kOfVariants });
   const bytes = await encodePng(
     look.color ? withoutFringes(look.color) : { width: 1, height: 1, data: new Uint8Array(4) },
   );
