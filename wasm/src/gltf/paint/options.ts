@@ -54,7 +54,7 @@ export interface PaintOptions
    * colours or alpha of the model, blend all of a texture with alpha, and read PNGs for a look.
    */
   decode?: ImageCodec['decode'] | undefined;
-  /** Writes images with a look. Default: PNGs. */
+  /** Writes the model's textures with a look. Default: PNGs, as all that overlays show. */
   encode?: ImageCodec['encode'] | undefined;
   /**
    * Decoders of compressed geometry: `MeshoptDecoder` of `meshoptimizer`, and what `createDecoderModule` of `draco3dgltf` makes. What they
