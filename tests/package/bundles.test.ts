@@ -29,17 +29,17 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   [
     'applyTransferAsync',
-    32_200,
+    33_300,
     "import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, for WebGPURenderer',
-    33_500,
+    34_600,
     "import 'cagecast/three/webgpu'; import { applyTransferAsync } from 'cagecast/three'; console.log(applyTransferAsync);",
   ],
   [
     'applyTransferAsync, layers and painting',
-    56_600,
+    58_100,
     `import { applyTransferAsync, createLayers, createPainter } from 'cagecast/three';
     console.log(applyTransferAsync, createLayers, createPainter);`,
   ],
@@ -52,8 +52,8 @@ const kPages: [what: string, most: number, script: string][] = [
   ],
   ['layers', 17_900, "import { createLayers } from 'cagecast/three'; console.log(createLayers);"],
   ['<cagecast-viewer>', 67_000, "import 'cagecast/viewer';"],
-  ['useCagecast', 76_300, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
-  ['inspect', 33_000, "import { inspect } from 'cagecast'; console.log(inspect);"],
+  ['useCagecast', 77_300, "import { useCagecast } from 'cagecast/react'; console.log(useCagecast);"],
+  ['inspect', 33_300, "import { inspect } from 'cagecast'; console.log(inspect);"],
   ['bakeTexture', 6500, "import { bakeTexture } from 'cagecast/engines'; console.log(bakeTexture);"],
   ['cagecast of cagecast/gltf', 132_900, "import { cagecast } from 'cagecast/gltf'; console.log(cagecast);"],
   ['paintGlb', 70_000, "import { paintGlb } from 'cagecast/gltf'; console.log(paintGlb);"],

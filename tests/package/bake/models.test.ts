@@ -400,7 +400,7 @@ describe('documents', () => {
       [{ paints: { color: red, normal: red }, images: { ...images, encode } }, /the disk is full/],
       [
         { images: { ...images, decode } },
-        /^CagecastError: bake: images\.decode gave 27648 bytes for 96 × 96 pixels, not/,
+        /^CagecastError: bake: images\.decode\(…\)\.data has 27648 bytes, not 4 for each of 96 × 96 pixels/,
       ],
       [{ paints: {} }, paints],
       [{ paints: { color: red, norml: red } }, paints],
