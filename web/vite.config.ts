@@ -113,7 +113,7 @@ export default defineConfig({
             // Modules of the first view that features share. No worker may import them, nor may they import app.ts, as it waits for features.
             {
               name: 'shared',
-              test: /web\/src\/(export\/link\.|loading\/(extract-mesh|file-paths|load-paint|samples|transfer-client)|panels\/part-menu|platform\/(ask|download|face|graphics|make|page|programs|shelf|store)\.|state\/(?!project|wardrobe|study|control-steps|verdict\/spots|wording)|tools\/(paint\/ring|cage\/arrow-keys)|view\/(colors|framing|overlay\/(?!roll-on)|pick|ray|segments))/,
+              test: /web\/src\/(export\/link\.|loading\/(extract-mesh|file-paths|load-paint|samples|transfer-client)|panels\/part-menu|platform\/(ask|download|face|graphics|make|page|programs|shelf|store)\.|state\/(?!project|wardrobe|study|control-steps|verdict\/spots|wording)|tools\/cage\/arrow-keys|view\/(colors|framing|overlay\/(?!roll-on)|pick|ray|segments))/,
             },
           ],
         },
