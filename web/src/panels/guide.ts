@@ -15,7 +15,7 @@ const kSteps: readonly Step[] = [
   {
     title: 'Left and right of the line',
     text: 'On the left, paint lies on eyes, teeth and tongue, as in a plain transfer. On the right, Cagecast leaves them bare. Drag the line.',
-    about: '#divider .knob',
+    about: '#divider .knob, #other-half', // a phone shows one half of Inspect at a time
     view: { mode: 'compare', split: 0.5 },
   },
   {
@@ -61,8 +61,8 @@ export class Guide {
   /** Shows one step. */
   show(at: number): void {
     const { title, text, about, view } = kSteps[at]!;
-    this.#mark(about);
     this.#session.setView({ ...this.#before, ...view });
+    this.#mark(about);
     const isLast = at === kSteps.length - 1;
     this.#fill(title, text, [
       ...(isLast ? [] : [['Skip', () => this.#end()] as const]),
@@ -86,8 +86,8 @@ export class Guide {
   #mark(about: string | undefined): void {
     for (const marked of document.querySelectorAll('.guided')) marked.classList.remove('guided');
     for (const found of about ? document.querySelectorAll(about) : []) {
-      found.classList.add('guided');
       found.closest<HTMLElement>('[popover]')?.showPopover();
+      if (found.checkVisibility()) found.classList.add('guided');
       found.scrollIntoView({ block: 'nearest' });
     }
   }
