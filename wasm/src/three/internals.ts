@@ -1,6 +1,7 @@
 /** All of this folder that other folders and the demo page use. What of it is public is in index.ts. */
 
 export { likelyTemplate } from '../cages/likely-template.js';
+export { matcher } from '../core/patterns.js';
 export { maxCompositeSize } from '../gltf/look/saved-images.js';
 export {
   maxLayers,

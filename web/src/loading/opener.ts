@@ -226,8 +226,7 @@ export class Opener implements Samples {
     const bitmap = await readImage(image).catch(() => undefined); // as a paint, it is said what is wrong
     const cage = this.#session.shown?.cage;
     const mayBeFace = image.type === 'image/jpeg' && cage !== undefined && hasFace(cage);
-    const isSheet = bitmap?.width === bitmap?.height && ((bitmap?.width ?? 0) & ((bitmap?.width ?? 0) - 1)) === 0;
-    const isPaint = !bitmap || (isSheet && !mayBeFace);
+    const isPaint = !bitmap || (isSheet(bitmap) && !mayBeFace);
     if (isPaint || !this.onPicture) return open();
     const others = this.onPicture(bitmap);
     const text = `${image.name}: click where it belongs on the model.`;
@@ -381,3 +380,6 @@ export class Opener implements Samples {
     });
   }
 }
+
+/** Whether an image has the shape of most textures: a square of a power of two. */
+const isSheet = ({ width, height }: ImageBitmap): boolean => width === height && (width & (width - 1)) === 0;

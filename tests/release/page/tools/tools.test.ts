@@ -96,6 +96,7 @@ test('a sticker is seen before it is placed, and is moved, turned, scaled, mirro
   assert.deepEqual(await faults(page), []);
   const first = await bareLook(page, area);
 
+  // Not around an edge of the cube, where the sticker would end.
   await drag(page, area, [0.43, 0.5], [0.47, 0.5], [0.51, 0.5]);
   await away(page);
   const moved = await green(page, area);

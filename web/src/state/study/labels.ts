@@ -1,3 +1,4 @@
+import { matcher } from '#three';
 import type { ExtractedMesh } from '../model';
 
 /** What is known of each vertex of a model, as a 1 for yes. */
@@ -34,8 +35,8 @@ function perVertex(given: unknown, what: string, { positions, groups, names }: L
   const count = positions.length / 3;
   const values = typeof given === 'string' ? [...given] : Array.isArray(given) ? given : [given];
   if (typeof given !== 'string' && values.every((value) => typeof value === 'string')) {
-    const meant = values.map((value) => patternOf(value as string));
-    const isMeant = names.map((all) => all.some((name) => meant.some((pattern) => pattern.test(name))));
+    const meant = values.map((value) => matcher(value as string));
+    const isMeant = names.map((all) => all.some((name) => meant.some((matches) => matches(name))));
     return Uint8Array.from(groups, (group) => Number(isMeant[group]));
   }
   if (values.some((value) => !/^[01]$/.test(String(value))))
@@ -44,13 +45,3 @@ function perVertex(given: unknown, what: string, { positions, groups, names }: L
     throw new Error(`${what}: it has ${values.length} values, and the model ${count} vertices; one each is expected`);
   return Uint8Array.from(values, Number);
 }
-
-/** A whole name, whatever its case. */
-const patternOf = (name: string): RegExp =>
-  new RegExp(
-    `^${name
-      .split('*')
-      .map((text) => text.replace(/[\\^$.*+?()[\]{}|]/g, '\\$&'))
-      .join('.*')}$`,
-    'i',
-  );
